@@ -8,7 +8,7 @@
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "math/frame.h"
+#include "math/vec.h"
 #include "measure/statistics.h"
 #include "scene/mesh_attributes.h"
 #include "scene/surface.h"

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rotation between two probes of one place: known ones are found, and doubtful ones said to be.
-#include "probe/align.h"
+#include "probe/capture/align.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "probe/convert.h"
 #include "probe/load.h"
-#include "probe/rasterize.h"
 #include "probe/synth.h"
 #include "shared_data.h"
 #include "sphere_test.h"

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "lighting/area/region_areas.h"
 #include "lighting/constellation/median_cut.h"
+#include "lighting/light_areas.h"
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"
-#include "probe/sun.h"
+#include "probe/sun_extraction.h"
 #include "probe/synth.h"
 #include "sphere_test.h"
 #include "strategy_samples.h"

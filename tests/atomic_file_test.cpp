@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that are complete or not there, and what killed processes leave.
-#include "base/atomic_file.h"
+#include "base/file.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -9,7 +9,6 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "base/file.h"
 #include "run_command.h"
 
 namespace chromeball::atomic_file_test {

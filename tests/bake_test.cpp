@@ -2,7 +2,6 @@
 // Baked light against closed forms.
 #include <gtest/gtest.h>
 
-#include "bake/fill_page.h"
 #include "bake/lightmap.h"
 #include "bake/texel_filter.h"
 #include "bake/vertex_light.h"

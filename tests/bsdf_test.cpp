@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "all_tables.h"
-#include "math/sobol.h"
+#include "math/sampler.h"
 #include "shading/bsdf.h"
 #include "shading/ggx.h"
 #include "sphere_test.h"

@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "relight/clustered_pca.h"
+#include "relight/transfer/clustered_pca.h"
 
 namespace chromeball::clustered_pca_test {
 namespace {

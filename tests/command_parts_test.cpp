@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "base/hash.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "image/io/read_image.h"
 #include "measure/image_error.h"
 #include "paths.h"

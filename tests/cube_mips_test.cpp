@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chains of prefiltered cube maps, and chromeball probe convolve.
-#include "probe/cube_mips.h"
 #include "base/json.h"
 #include "json_file.h"
+#include "probe/prefiltered_probe.h"
 
 #include <Imath/half.h>
 #include <gtest/gtest.h>
@@ -15,9 +15,9 @@
 #include "base/error.h"
 #include "image/io/write_image.h"
 #include "npm_packages.h"
+#include "probe/convolve.h"
 #include "probe/irradiance.h"
 #include "probe/synth.h"
-#include "probe/zonal_kernel.h"
 #include "run_command.h"
 
 namespace chromeball::cube_mips_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Denoised composites: less error in both modes, and the plate's bits where objects change nothing.
-#include "composite/denoise_composite.h"
+#include "composite/compose.h"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "denoise/planes.h"
 #include "denoise/regression.h"
 #include "denoise/selection.h"
-#include "denoise/vector8.h"
 #include "math/sampler.h"
 #include "measure/image_error.h"
 #include "render/render.h"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "image/develop/glare.h"
+#include "image/develop/bloom.h"
 #include "image/develop/vignette.h"
 
 namespace chromeball::develop_test {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "math/sobol.h"
+#include "math/sampler.h"
 #include "sphere_test.h"
 
 namespace chromeball::direction_tree_test {

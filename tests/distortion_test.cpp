@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lenses with radial distortion and a shifted axis: rays, image positions, footprints, renders.
-#include "scene/distortion.h"
+#include "scene/camera.h"
 
 #include <gtest/gtest.h>
 
 #include "base/hash.h"
 #include "scene/camera_view.h"
-#include "scene/projection.h"
 #include "test_scene.h"
 
 namespace chromeball::distortion_test {

@@ -5,7 +5,7 @@
 
 #include "approximate/environment_map.h"
 #include "base/parallel.h"
-#include "math/frame.h"
+#include "math/vec.h"
 #include "probe/sky.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"

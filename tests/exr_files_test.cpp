@@ -19,7 +19,7 @@
 #include "image/io/write_image.h"
 #include "probe/capture/merge_photographs.h"
 #include "probe/load.h"
-#include "relight/stage_file.h"
+#include "relight/stage/stage_file.h"
 #include "temporary_folder.h"
 
 namespace chromeball::exr_files_test {

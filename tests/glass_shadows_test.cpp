@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "probe/synth.h"
-#include "scene/thin_wall.h"
+#include "scene/extended_surface.h"
 #include "test_scene.h"
 
 namespace chromeball::glass_shadows_test {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "relight/clustered_pca.h"
-#include "relight/glossy_transfer.h"
+#include "relight/transfer/clustered_pca.h"
+#include "relight/transfer/glossy_transfer.h"
 #include "small_scenes.h"
 
 namespace chromeball::glossy_transfer_test {

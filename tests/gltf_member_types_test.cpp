@@ -4,7 +4,7 @@
 
 #include "gltf_writer.h"
 #include "json_file.h"
-#include "scene/gltf/member_types.h"
+#include "scene/gltf/gltf_json.h"
 
 namespace chromeball::gltf_member_types_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "composite/plate_scale.h"
+#include "composite/plate.h"
 #include "test_scene.h"
 
 namespace chromeball::ground_test {

@@ -5,11 +5,11 @@
 
 #include "approximate/cached_integrator.h"
 #include "approximate/gather_irradiance.h"
+#include "base/archive.h"
 #include "base/error.h"
-#include "base/memory_archive.h"
 #include "base/parallel.h"
 #include "probe/synth.h"
-#include "scene/thin_wall.h"
+#include "scene/extended_surface.h"
 #include "small_scenes.h"
 #include "study/row.h"
 

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "lighting/fit/cosine_pattern.h"
 #include "lighting/fit/light_descent.h"
 #include "lighting/fit/light_error.h"
 #include "lighting/fit/nonnegative.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights with an ambient term: on real probes and in a hall, and the picture of their irradiance.
-#include "lighting/irradiance_spheres.h"
+#include "lighting/export/light_preview.h"
 
 #include <gtest/gtest.h>
 

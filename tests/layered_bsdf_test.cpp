@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "all_tables.h"
-#include "math/sobol.h"
+#include "math/sampler.h"
 #include "shading/fresnel.h"
 #include "shading/layered.h"
-#include "shading/thin_film.h"
 #include "sphere_test.h"
 
 namespace chromeball::layered_bsdf_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Median cut by levels, the regions of constellations, and their preview.
-#include "lighting/constellation/level_cut.h"
+#include "lighting/constellation/median_cut.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <array>
 
 #include "constellation_maps.h"
+#include "lighting/export/light_preview.h"
 #include "lighting/fit/light_error.h"
-#include "lighting/light_preview.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"

@@ -2,10 +2,9 @@
 // The shapes of area lights: regions of a map, and discs.
 #include <gtest/gtest.h>
 
-#include "lighting/area/disc_areas.h"
-#include "lighting/area/region_areas.h"
 #include "lighting/constellation/kollig_keller.h"
 #include "lighting/constellation/median_cut.h"
+#include "lighting/light_areas.h"
 #include "probe/solid_angle.h"
 #include "sphere_test.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of directional lights, and their error of irradiance (Madsen and Laursen 2007).
-#include "lighting/light_file.h"
+#include "lighting/export/light_file.h"
 #include "base/json.h"
 #include "json_file.h"
 

@@ -9,7 +9,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "lighting/light_file.h"
+#include "lighting/export/light_file.h"
 #include "probe/sky.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "math/cdf.h"
-#include "math/frame.h"
+#include "math/vec.h"
 #include "sphere_test.h"
 
 namespace chromeball::math_test {

@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "probe/synth.h"
-#include "scene/thin_wall.h"
+#include "scene/extended_surface.h"
 #include "session/denoised_image.h"
 #include "study/row.h"
 #include "test_probes.h"

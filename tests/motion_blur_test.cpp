@@ -13,7 +13,7 @@
 #include "measure/statistics.h"
 #include "probe/synth.h"
 #include "run_command.h"
-#include "scene/moving_camera.h"
+#include "scene/camera.h"
 #include "session/run_job.h"
 #include "shared_data.h"
 #include "temporary_folder.h"

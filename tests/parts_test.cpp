@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "base/archive.h"
 #include "base/error.h"
-#include "base/memory_archive.h"
 #include "measure/image_error.h"
 #include "measure/statistics.h"
 #include "parts/merge.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <random>
 
-#include "base/condense.h"
+#include "base/message.h"
 #include "run_command.h"
 
 namespace chromeball::printable_test {

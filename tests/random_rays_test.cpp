@@ -11,11 +11,11 @@
 
 #include "base/parallel.h"
 #include "image/io/write_image.h"
-#include "math/frame.h"
 #include "math/icosphere.h"
+#include "math/vec.h"
 #include "math/warp.h"
+#include "probe/convert.h"
 #include "probe/mapping.h"
-#include "probe/rasterize.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 #include "run_command.h"

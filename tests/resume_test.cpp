@@ -2,8 +2,8 @@
 // Renders that stop between tiles and go on from what was stored.
 #include <gtest/gtest.h>
 
+#include "base/archive.h"
 #include "base/error.h"
-#include "base/memory_archive.h"
 #include "render/render_state.h"
 #include "small_scenes.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Suns that a scene has besides its probe: [[light]] without a type, or of type sun.
-#include "lighting/scene_suns.h"
+#include "lighting/scene_sources.h"
 
 #include <gtest/gtest.h>
 

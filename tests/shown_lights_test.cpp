@@ -8,8 +8,8 @@
 
 #include "floor_in_surroundings.h"
 #include "image/io/write_image.h"
-#include "lighting/area/region_areas.h"
 #include "lighting/constellation/median_cut.h"
+#include "lighting/light_areas.h"
 #include "lighting/methods.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "measure/statistics.h"
 #include "photographs_of_points.h"
-#include "scene/solve/camera_doubts.h"
+#include "scene/solve/solved_camera.h"
 #include "scene/solve/spread_rotations.h"
 
 namespace chromeball::solve_points_test {

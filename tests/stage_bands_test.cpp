@@ -4,9 +4,8 @@
 
 #include "base/error.h"
 #include "image/io/write_image.h"
-#include "relight/keep_largest.h"
-#include "relight/relit_stage.h"
-#include "relight/stage_bands.h"
+#include "relight/stage/relit_stage.h"
+#include "relight/stage/stage_file.h"
 #include "small_scenes.h"
 #include "sphere_test.h"
 #include "temporary_folder.h"

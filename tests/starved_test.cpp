@@ -8,7 +8,7 @@
 
 #include <fstream>
 
-#include "base/atomic_file.h"
+#include "base/file.h"
 #include "base/json.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"

@@ -9,9 +9,9 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "image/image.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "image/resample.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"

@@ -6,7 +6,7 @@
 
 #include "probe/irradiance.h"
 #include "probe/synth.h"
-#include "relight/occlusion_layers.h"
+#include "relight/stage/light_layers.h"
 #include "test_scene.h"
 
 namespace chromeball::surface_layers_test {

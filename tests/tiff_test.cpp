@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "image/image.h"
 #include "image/io/read_image.h"
-#include "image/orientation.h"
 #include "run_command.h"
 #include "tiff_file.h"
 

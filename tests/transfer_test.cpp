@@ -8,7 +8,7 @@
 #include "probe/irradiance.h"
 #include "probe/spherical_harmonics.h"
 #include "probe/synth.h"
-#include "relight/vertex_transfer.h"
+#include "relight/transfer/vertex_transfer.h"
 #include "small_scenes.h"
 
 namespace chromeball::transfer_test {

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "math/vec.h"
-#include "relight/dct.h"
-#include "relight/haar.h"
+#include "relight/stage/transforms.h"
 #include "sphere_test.h"
 
 namespace chromeball::transforms_test {

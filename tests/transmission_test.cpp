@@ -2,7 +2,7 @@
 // Renders of light through bodies and thin sheets of glass.
 #include <gtest/gtest.h>
 
-#include "probe/rasterize.h"
+#include "probe/convert.h"
 #include "probe/synth.h"
 #include "shading/fresnel.h"
 #include "test_scene.h"

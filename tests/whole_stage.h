@@ -2,8 +2,8 @@
 // Light stages in one band.
 #pragma once
 
-#include "relight/render_basis.h"
-#include "relight/stage_file.h"
+#include "relight/stage/render_basis.h"
+#include "relight/stage/stage_file.h"
 
 namespace chromeball {
 

@@ -5,7 +5,7 @@
 
 #include "animation/match_scenes.h"
 #include "base/error.h"
-#include "scene/moving_camera.h"
+#include "scene/camera.h"
 
 namespace chromeball {
 namespace {

@@ -5,6 +5,6 @@
 
 #include "lighting/light_source.h"
 #include "lighting/strategy.h"
-#include "math/frame.h"
+#include "math/vec.h"
 #include "math/warp.h"
 #include "probe/probe.h"

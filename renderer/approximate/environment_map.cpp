@@ -4,11 +4,11 @@
 #include <array>
 #include <set>
 
-#include "lighting/scene_suns.h"
-#include "math/frame.h"
+#include "lighting/scene_sources.h"
+#include "math/vec.h"
 #include "probe/sun_extraction.h"
 #include "shading/ggx.h"
-#include "trace/surface_ray.h"
+#include "trace/accel.h"
 #include "transport/first_surface.h"
 
 namespace chromeball {
@@ -138,7 +138,7 @@ Rgb EnvironmentMapIntegrator::ofSources(const Point& point, PathContext& context
 
 // Of the sources that light samples do not find: for a smooth lobe, all that is seen; else the
 // light that no light sample has a pdf for, which is the same from all directions
-// (ambient_light.h).
+// (scene_sources.h).
 Rgb EnvironmentMapIntegrator::unsampled(const Point& point, const MapLobe& lobe) const {
   const bool isSmooth = !lobe.isDiffuse && lobe.roughness == 0;
   Rgb sum(0);

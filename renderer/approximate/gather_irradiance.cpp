@@ -7,8 +7,8 @@
 
 #include "base/parallel.h"
 #include "film/invalid.h"
-#include "math/frame.h"
-#include "trace/surface_ray.h"
+#include "math/vec.h"
+#include "trace/accel.h"
 
 namespace chromeball {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "approximate/occlusion.h"
 
-#include "math/frame.h"
+#include "math/vec.h"
 #include "math/warp.h"
-#include "trace/surface_ray.h"
+#include "trace/accel.h"
 #include "transport/context.h"
 #include "transport/world.h"
 

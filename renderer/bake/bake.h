@@ -2,11 +2,50 @@
 // Estimates the light at many points, on all threads.
 #pragma once
 
-#include "bake/point_light.h"
+#include "bake/bake_points.h"
 #include "base/progress.h"
 #include "film/invalid.h"
+#include "transport/path.h"
 
 namespace chromeball {
+
+// Estimates the light at a point of a surface.
+
+enum class BakedLight {
+  Irradiance,        // of the front, W/m^2: pi times the radiance of a white Lambertian surface
+  AmbientOcclusion,  // 1 / pi integral of V cos, V the visibility of the sky
+  Radiance           // that the front emits and reflects along its normal
+};
+inline constexpr const char* kBakedLightNames[] = {"irradiance", "ambient-occlusion", "radiance"};
+
+class PointLight {
+ public:
+  // The tracer must outlive this. `distance`: what is farther away does not occlude, metres.
+  PointLight(const PathTracer& tracer, BakedLight what, float distance)
+      : tracer_(tracer), what_(what), distance_(distance) {}
+
+  BakedLight what() const { return what_; }
+  const Scene& scene() const { return tracer_.world().scene; }
+
+  // The front of the surface; with the interpolated normal, for radiance with that of the material.
+  Surface surfaceAt(const BakePoint& point) const;
+
+  // One sample; uses the random numbers of a path.
+  Rgb sample(const BakePoint& point, const Surface& surface, PathContext& context) const;
+
+  // Whether the point is inside a body: most rays from it first hit the back of a closed surface,
+  // or that of any surface nearer than a texel. Glass and blended surfaces are not counted. Uses
+  // samples of the current pixel.
+  bool isBuried(const BakePoint& point, const Surface& surface,
+                const std::vector<PlacedMesh>& meshes, PathContext& context) const;
+
+ private:
+  Rgb irradiance(const Surface& surface, PathContext& context) const;
+
+  const PathTracer& tracer_;
+  BakedLight what_;
+  float distance_;
+};
 
 struct BakeSettings {
   BakedLight what = BakedLight::Irradiance;
@@ -33,5 +72,17 @@ struct BakeResult {
 BakeResult bake(const World& world, const LightSource& lighting,
                 const std::vector<PlacedMesh>& meshes, const std::vector<BakePoint>& points,
                 const BakeSettings& settings, const Progress& progress);
+
+// Linear RGB and coverage at a point whose front has this light: for irradiance E, base colour x
+// E / pi plus what the surface emits along its normal; for radiance the light itself; for occlusion
+// its grey. The base colour is the mean over the point's extent.
+vec4 shownColor(const PointLight& light, const BakePoint& point, const Rgb& baked);
+
+// Whether the colours of an instance count for the scale of the file: those of surfaces that emit
+// do not, so that lamps do not darken the rest.
+bool countsForScale(const Scene& scene, int instance);
+
+// The smallest power of two, from 1 up, that no channel exceeds.
+float scaleOf(float maximum);
 
 }  // namespace chromeball

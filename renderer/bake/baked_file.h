@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
-#include "bake/baked_geometry.h"
+#include "bake/bake.h"
 #include "bake/gltf_document.h"
 #include "bake/lightmap.h"
+#include "bake/placed_mesh.h"
 
 namespace chromeball {
 

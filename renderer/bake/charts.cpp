@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "math/frame.h"
+#include "math/vec.h"
 
 namespace chromeball {
 namespace {

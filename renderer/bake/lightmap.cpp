@@ -3,8 +3,7 @@
 
 #include <unordered_map>
 
-#include "bake/fill_page.h"
-#include "bake/shown_color.h"
+#include "bake/texel_filter.h"
 #include "base/parallel.h"
 
 namespace chromeball {

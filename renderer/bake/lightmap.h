@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bake/bake.h"
-#include "bake/baked_geometry.h"
+#include "bake/placed_mesh.h"
 #include "image/image.h"
 
 namespace chromeball {

@@ -3,7 +3,8 @@
 #pragma once
 
 #include "bake/bake.h"
-#include "bake/baked_geometry.h"
+#include "bake/bake_points.h"
+#include "bake/placed_mesh.h"
 
 namespace chromeball {
 
@@ -17,10 +18,21 @@ std::vector<BakedGeometry> colouredGeometry(const PointLight& what,
                                             const std::vector<BakePoint>& points,
                                             const BakeResult& baked);
 
-// The largest channel of the colours that count for the scale (shown_color.h).
+// The largest channel of the colours that count for the scale (baked_file.h).
 float brightestOf(const PointLight& what, const std::vector<BakedGeometry>& geometry);
 
 // Whether a surface's colours are all that it shows: its texture does not come on top.
 bool showsWhole(BakedLight what, const Material& material);
+
+// The geometry that the points of vertices make.
+
+// By instance: its vertices, in the order of vertexPoints(), and the triangles between them.
+std::vector<BakedGeometry> vertexGeometry(const std::vector<PlacedMesh>& meshes,
+                                          const std::vector<BakePoint>& points);
+
+// Of an instance: vertices without light take the mean of those that they share edges with, from
+// the edge of the lit part inwards.
+void fillVertices(const std::vector<Triangle>& triangles, std::vector<Rgb>& light,
+                  std::vector<uint8_t> isLit);
 
 }  // namespace chromeball

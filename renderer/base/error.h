@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/remedy.h"
+#include "base/message.h"
 
 namespace chromeball {
 

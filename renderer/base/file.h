@@ -35,11 +35,62 @@ class FileBytes {
 
 // Checks that a file can be created or replaced at `path`, so that a run fails before the work and
 // not after it. The write itself may still fail. Throws InputError if the folder does not exist or
-// `path` is no file that can be replaced (atomic_file.h), RunError if nothing can be written into
+// `path` is no file that can be replaced (file.h), RunError if nothing can be written into
 // it.
 void checkReplaceable(const std::filesystem::path& path);
 
 // Writes the bytes atomically. Throws RunError.
 void writeFile(const std::filesystem::path& path, std::span<const uint8_t> bytes);
+
+// A hash of a file's contents.
+
+// A hash of a file's bytes. Throws InputError if it cannot be read.
+uint64_t fingerprint(const std::string& path);
+
+// A file that is either as it was before or complete.
+
+// A file that appears under its name only when complete. It is written under a temporary name in
+// the same folder and renamed by commit(). The destructor removes it if commit() was not called.
+//
+// The temporary name is that of the file and of this machine, and locked, so that what a killed
+// process left is overwritten by the next one that writes the file on the same machine. The files
+// of other machines are never touched: whether their process still exists is not known here.
+//
+// A symbolic link stays one: the file that it leads to is replaced.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::filesystem::path& target);  // throws as replaceableFile() does
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  const std::filesystem::path& temporary() const { return temporary_; }  // write here
+  void commit();                                                         // throws RunError
+
+ private:
+  std::filesystem::path target_, temporary_;
+  int lock_ = -1;  // descriptor of the temporary file; -1: none
+};
+
+// The file at the end of the symbolic links that begin at `path`; it need not exist. Throws
+// InputError if it is a FIFO, a device or a socket, which cannot be replaced by a complete file, or
+// if the links go in a circle.
+std::filesystem::path replaceableFile(const std::filesystem::path& path);
+
+// Excludes other processes from a file.
+
+// Holds FILE.lock until it is destroyed. The system releases it also if the process is killed.
+class FileLock {
+ public:
+  // Throws InputError if another process holds it, RunError if it cannot be created.
+  explicit FileLock(const std::filesystem::path& file);
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+};
 
 }  // namespace chromeball

@@ -3,8 +3,10 @@
 // compile: call these.
 #pragma once
 
-#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -20,5 +22,12 @@ nlohmann::json parseJson(std::span<const uint8_t> text);
 
 // A `discarded` value if the text is no JSON, or nested more deeply than what this program writes.
 nlohmann::ordered_json readJson(const std::string& text);
+
+// Reads JSON files that people write.
+
+// `kind`: what the file should be, in the plural: "lists of lights". Throws InputError for a file
+// of more than maxMegabytes, and, with the line, for one that is not JSON.
+nlohmann::json readJsonFile(const std::filesystem::path& path, size_t maxMegabytes,
+                            std::string_view kind);
 
 }  // namespace chromeball

@@ -6,9 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "base/remedy.h"
-
 namespace chromeball {
+
+// The setting that resolves what an error or a message is about, by its name in the table of
+// settings (front/setting_table.h: "probe.scale"). The command prints the option that sets it.
+struct Remedy {
+  std::string setting;
+  std::string value;  // one that would do; empty: unknown
+};
 
 struct Message {
   enum class Kind {
@@ -21,5 +26,11 @@ struct Message {
 };
 
 using Messages = std::vector<Message>;
+
+// Many messages of a kind as one.
+
+// For a terminal: of more than three messages that differ only in numbers and in quoted names, the
+// first with a count of the others.
+Messages condensed(const Messages& messages);
 
 }  // namespace chromeball

@@ -3,12 +3,57 @@
 // synthetic objects, along paths that are shared until an object affects them.
 #pragma once
 
-#include "composite/differential_film.h"
-#include "composite/worlds.h"
+#include <vector>
+
+#include "composite/layers.h"
 #include "image/image.h"
+#include "trace/ray.h"
 #include "transport/integrator.h"
+#include "transport/path.h"
 
 namespace chromeball {
+
+// Ray masks of the two worlds of a composite: with and without the synthetic objects.
+
+// By instance: true for a synthetic object, false for the local scene (a model of real surfaces in
+// the plate).
+using ObjectMask = std::vector<bool>;
+
+// Rays with kLocalScene hit only the local scene; rays with kAllInstances also hit the objects.
+inline constexpr RayMask kLocalScene = 1, kObjects = 2;
+
+// The masks for the World of a composite.
+inline std::vector<RayMask> rayMasks(const ObjectMask& isObject) {
+  std::vector<RayMask> masks;
+  for (const bool object : isObject) masks.push_back(object ? kObjects : kLocalScene);
+  return masks;
+}
+
+// Path tracing with and without the synthetic objects.
+
+// Path tracers of both worlds of a composite. The camera does not see the probe, because the plate
+// is the background.
+struct CompositeWorlds {
+  // `world` must have the masks of composite/differential.h; it and `lighting` must outlive this.
+  CompositeWorlds(const World& world, const LightSource& lighting, PathSettings settings)
+      : whole(world, lighting, with(settings, kAllInstances, kAllInstances)),
+        local(world, lighting, with(settings, kLocalScene, kLocalScene)),
+        shared(world, lighting, with(settings, kAllInstances, kLocalScene)) {}
+
+  bool isObject(const Hit& hit) const { return whole.world().accel.mask(hit.instance) == kObjects; }
+
+  PathTracer whole, local;
+  PathTracer shared;  // as `whole`, and compares its shadow rays with those of `local`
+
+ private:
+  static PathSettings with(PathSettings settings, RayMask visible, RayMask compared) {
+    settings.hideProbe = true;
+    settings.visible = visible;
+    settings.compared = compared;
+    settings.estimateDepthCut = visible == kAllInstances;  // only for the world with objects
+    return settings;
+  }
+};
 
 struct DifferentialSample {
   Rgb both{0};                     // radiance common to both worlds

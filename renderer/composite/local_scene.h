@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/named_setting.h"
-#include "composite/objects.h"
-#include "scene/projection.h"
+#include "composite/differential.h"
+#include "scene/camera_view.h"
 #include "scene/scene.h"
 
 namespace chromeball {

@@ -4,10 +4,13 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "image/image.h"
 #include "image/io/read_image.h"
-#include "image/resample.h"
+#include "math/quantile.h"
+#include "trace/accel.h"
 
 namespace chromeball {
+
 Image readPlate(const std::string& path, Messages* messages) {
   Image plate = readImage(path, IntegerTexels::Srgb, messages);
   size_t invalid = 0;
@@ -31,6 +34,47 @@ Image scaledPlate(const Image& image, int width, int height, const std::string& 
         "one with the plate's aspect ratio",
         name, image.width, image.height, width, height);
   return resampled(image, width, height);
+}
+
+std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
+                                   int width, int height) {
+  const Accel accel(localScene);
+  const CameraRays rays(camera, float(width) / float(height));
+  std::vector<size_t> pixels;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      Ray ray;
+      rays.ray((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height), ray.origin,
+               ray.direction);
+      Hit hit;
+      if (accel.intersect(ray, 0, hit) && localScene.instances[hit.instance].node == ground)
+        pixels.push_back(size_t(y) * size_t(width) + size_t(x));
+    }
+  return pixels;
+}
+
+PlateScale scaleByPlate(const Image& plate, const std::vector<size_t>& pixels,
+                        const Rgb& irradiance, const Rgb& reflectance) {
+  constexpr double kLow = 0.16, kHigh = 0.84;  // one standard deviation of a normal distribution
+  PlateScale result{.pixels = pixels.size()};
+  const auto valuesOf = [&](const auto& value) {
+    std::vector<double> values;
+    for (const size_t i : pixels)
+      values.push_back(
+          value(plate.rgb(int(i % size_t(plate.width)), int(i / size_t(plate.width)))));
+    return values;
+  };
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<double> radiance =
+        valuesOf([c](const Rgb& pixel) { return double(pixel[c]); });
+    result.scale[c] =
+        float(kPiD * quantile(radiance, 0.5) / (double(reflectance[c]) * double(irradiance[c])));
+  }
+  const std::vector<double> luminances =
+      valuesOf([](const Rgb& p) { return luminance(glm::dvec3(p)); });
+  const double spread = quantile(luminances, kHigh) - quantile(luminances, kLow);
+  result.scatter = 0.5 * spread / quantile(luminances, 0.5);
+  return result;
 }
 
 }  // namespace chromeball

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/message.h"
 #include "image/image.h"
+#include "math/vec.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
 
 namespace chromeball {
 
@@ -18,5 +22,24 @@ Image readPlate(const std::string& path, Messages* messages = nullptr);  // gets
 // dimension, otherwise throws InputError (message beginning with `name`). An image of the requested
 // size is returned unchanged.
 Image scaledPlate(const Image& image, int width, int height, const std::string& name);
+
+// The factor between a probe and a photograph of the same place, by the ground in the photograph.
+
+struct PlateScale {
+  Rgb scale{1};        // factor on the probe's radiance
+  double scatter = 0;  // of the ground's luminance: half of what 68% of its pixels span / median
+  size_t pixels = 0;   // that show the ground
+};
+
+// The pixels, as indices into the plate, whose middle shows the node `ground` of the local scene.
+std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
+                                   int width, int height);
+
+// The scale with which a matte ground of this reflectance has the median radiance of the plate: per
+// channel pi L / (reflectance E), with E the irradiance of the ground by the probe with scale 1,
+// W/m^2. Medians, since other things may stand on the ground. `pixels` not empty; E and the
+// reflectance above 0.
+PlateScale scaleByPlate(const Image& plate, const std::vector<size_t>& pixels,
+                        const Rgb& irradiance, const Rgb& reflectance);
 
 }  // namespace chromeball

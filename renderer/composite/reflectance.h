@@ -2,9 +2,9 @@
 // Estimates the reflectance of the local scene from the plate (HDRI book, section 9.7).
 #pragma once
 
-#include "composite/objects.h"
+#include "composite/differential.h"
 #include "render/render.h"
-#include "scene/projection.h"
+#include "scene/camera_view.h"
 
 namespace chromeball {
 
@@ -19,7 +19,8 @@ struct ReflectanceSolution {
 
 // The plate, and the scene and light that it shows.
 struct ReflectanceProblem {
-  const World& world;  // after makeProjected() (local_scene.h); masks as in composite/objects.h
+  const World&
+      world;  // after makeProjected() (local_scene.h); masks as in composite/differential.h
   const Camera& camera;
   const LightSource& lighting;
   const Image& plate;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "film/feature_film.h"
+#include "film/layer_film.h"
 
 namespace chromeball {
 

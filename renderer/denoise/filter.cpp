@@ -4,7 +4,7 @@
 #include <span>
 
 #include "base/parallel.h"
-#include "denoise/vector8.h"
+#include "denoise/planes.h"
 
 namespace chromeball {
 namespace {

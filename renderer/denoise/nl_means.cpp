@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/nl_means.h"
 
-#include "denoise/vector8.h"
+#include "denoise/planes.h"
 
 namespace chromeball {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "denoise/vector8.h"
+#include "denoise/planes.h"
 
 namespace chromeball {
 namespace {

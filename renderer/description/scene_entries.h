@@ -10,7 +10,7 @@
 #include "base/named_setting.h"
 #include "scene/camera.h"
 #include "scene/gltf/load_gltf.h"
-#include "scene/lamp.h"
+#include "scene/light.h"
 #include "scene/surroundings.h"
 
 namespace chromeball {

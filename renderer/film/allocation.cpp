@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "base/hash.h"
-#include "film/window.h"
+#include "film/rows.h"
 
 namespace chromeball {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "base/long_array.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/suggest.h"
 

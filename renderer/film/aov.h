@@ -46,7 +46,7 @@ struct FirstHit {
 //                   over the samples with a hit, 0 if none
 //   bent_normal     unit, the mean direction of the visible sky; 0 if there is none
 //   irradiance      W/m^2, of the light on the first surface; mean over the samples with a hit
-//   denoise         what a denoiser reads: several layers (film/feature_film.h)
+//   denoise         what a denoiser reads: several layers (film/layer_film.h)
 enum class Aov {
   Albedo,
   Normal,

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <limits>
 
-#include "base/long_array.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace chromeball {
@@ -142,6 +142,20 @@ PixelErrors Film::errors() const {
     }
   });
   return errors;
+}
+
+namespace {
+
+void subtract(Image& a, const Image& b) {
+  for (size_t i = 0; i < a.texels.size(); ++i) a.texels[i] -= b.texels[i];
+}
+
+}  // namespace
+
+HalvedImage operator-(HalvedImage a, const HalvedImage& b) {
+  subtract(a.mean, b.mean);
+  subtract(a.half, b.half);
+  return a;
 }
 
 }  // namespace chromeball

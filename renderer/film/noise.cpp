@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <limits>
 
-#include "base/long_array.h"
+#include "base/memory.h"
 #include "base/parallel.h"
-#include "film/window.h"
+#include "film/rows.h"
 
 namespace chromeball {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "probe/polygon_corners.h"
 #include "probe/polygon_source.h"
 
 namespace chromeball {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "front/arguments.h"
-#include "lighting/light_list.h"
+#include "lighting/export/light_list.h"
 #include "probe/sky.h"
 
 namespace chromeball {

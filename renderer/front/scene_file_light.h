@@ -3,12 +3,12 @@
 #pragma once
 
 #include "front/toml_section.h"
-#include "scene/lamp.h"
+#include "scene/light.h"
 
 namespace chromeball {
 
-// Reads one table: a lamp, or the lamps of a list (lighting/light_list.h), whose path is added to
-// `files`. Throws InputError.
+// Reads one table: a lamp, or the lamps of a list (lighting/export/light_list.h), whose path is
+// added to `files`. Throws InputError.
 std::vector<Lamp> readLamps(const Entry& entry, std::vector<std::string>& files);
 
 }  // namespace chromeball

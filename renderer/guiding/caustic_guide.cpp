@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "math/frame.h"
+#include "math/vec.h"
 #include "math/warp.h"
 
 namespace chromeball {

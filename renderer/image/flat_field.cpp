@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "math/least_squares.h"
+#include "math/dense_solvers.h"
 
 namespace chromeball {
 namespace {

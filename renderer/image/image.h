@@ -33,4 +33,14 @@ struct Image {
   }
 };
 
+// Images of another size.
+
+// With a box filter: each pixel has the mean of what it covers. An image of the requested size is
+// returned unchanged.
+Image resampled(const Image& image, int width, int height);
+
+// The image as it is to be seen, of one that is stored with this orientation (EXIF and TIFF, tag
+// 274: 1 to 8; 6 is to be turned clockwise). Others leave it as it is.
+Image oriented(Image stored, int orientation);
+
 }  // namespace chromeball

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/memory_budget.h"
+#include "base/memory.h"
 
 namespace chromeball {
 

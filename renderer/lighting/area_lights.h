@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "lighting/area/light_areas.h"
+#include "lighting/light_areas.h"
 #include "lighting/light_source.h"
 #include "math/cdf.h"
 #include "probe/probe.h"

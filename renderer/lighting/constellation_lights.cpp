@@ -5,11 +5,9 @@
 
 #include "lighting/constellation/cube_grid.h"
 #include "lighting/constellation/kollig_keller.h"
-#include "lighting/constellation/level_cut.h"
 #include "lighting/constellation/lightgen.h"
 #include "lighting/constellation/median_cut.h"
 #include "lighting/constellation/penrose.h"
-#include "lighting/constellation/variance_cut.h"
 
 namespace chromeball {
 namespace {

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "math/warp.h"
-#include "scene/plane_offset.h"
+#include "scene/placed_triangles.h"
 #include "scene/surface.h"
 #include "shading/bsdf.h"
 

@@ -13,7 +13,6 @@
 
 #include "image/image.h"
 #include "lighting/constellation/directional_light.h"
-#include "lighting/light_preview.h"
 #include "lighting/strategy.h"
 
 namespace chromeball {

@@ -7,6 +7,8 @@
 
 #include "lighting/emitters.h"
 #include "lighting/light_source.h"
+#include "lighting/sky_discs.h"
+#include "scene/light.h"
 
 namespace chromeball {
 
@@ -17,6 +19,50 @@ struct SceneSources {
   std::vector<std::unique_ptr<const LightSource>> all;
   std::vector<size_t> distant;         // of these: those that rays find which hit nothing
   const Emitters* emitters = nullptr;  // of these: photons start there; null where nothing emits
+};
+
+// Suns that a scene has besides its probe (HDRI book, sections 9.3.5 and 9.6.1).
+
+// The camera and mirrors see the visible discs; all other rays find all discs.
+class SceneSuns : public LightSource {
+ public:
+  explicit SceneSuns(const std::vector<SunLamp>& suns);
+
+  void sample(const LightPoint& point, const PixelSampler& sampler,
+              std::vector<DirectionSample>& out) const override;
+  Escaped escaped(const LightPoint&, const vec3& wi) const override {
+    const SkyDiscs::Light light = all_.at(wi);
+    return {light.radiance, light.pdf};
+  }
+  Rgb background(const vec3&, const vec3& wi) const override { return visible_.at(wi).radiance; }
+  std::vector<std::string> groups() const override { return names_; }
+  void splitEscaped(const LightPoint& point, const vec3& wi,
+                    std::span<Rgb> radiances) const override;
+  void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
+
+ private:
+  SkyDiscs all_, visible_;
+  std::vector<std::string> names_;  // of all
+  std::vector<size_t> seen_;        // indices of the visible ones
+};
+
+// Constant radiance from all directions, as light lists have it (lighting/export/light_file.h).
+
+// Found by BSDF samples only, which for constant radiance are as good as light samples.
+class AmbientLight : public LightSource {
+ public:
+  explicit AmbientLight(const AmbientLamp& lamp) : lamp_(lamp) {}
+
+  void sample(const LightPoint&, const PixelSampler&,
+              std::vector<DirectionSample>&) const override {}
+  Escaped escaped(const LightPoint&, const vec3&) const override { return {lamp_.radiance, 0}; }
+  Rgb background(const vec3&, const vec3&) const override {
+    return lamp_.isVisible ? lamp_.radiance : Rgb(0);
+  }
+  std::vector<std::string> groups() const override { return {lamp_.name}; }
+
+ private:
+  AmbientLamp lamp_;
 };
 
 }  // namespace chromeball

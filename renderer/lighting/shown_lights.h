@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "lighting/area/disc_areas.h"
 #include "lighting/constellation/directional_light.h"
+#include "lighting/light_areas.h"
 #include "lighting/light_source.h"
 #include "math/rotation.h"
 

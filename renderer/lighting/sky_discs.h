@@ -9,8 +9,8 @@
 #include "math/cdf.h"
 #include "math/rotation.h"
 #include "math/sampler.h"
-#include "math/spherical_cap.h"
-#include "probe/sun.h"
+#include "math/warp.h"
+#include "probe/sun_extraction.h"
 
 namespace chromeball {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lighting/light_source.h"
-#include "math/frame.h"
+#include "math/vec.h"
 #include "math/warp.h"
 #include "probe/probe.h"
 
@@ -21,6 +21,24 @@ class Uniform : public LightSource {
   }
   Escaped escaped(const LightPoint& point, const vec3& wi) const override {
     return {probe_.radiance(wi), glm::dot(point.normal, wi) > 0 ? 0.5f * kInvPi : 0};
+  }
+  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
+  bool unbiased() const override { return true; }
+
+ private:
+  const Probe& probe_;
+};
+
+// `bsdf`: no light samples; BSDF samples find the probe (HDRI book, section 9.5).
+
+class BsdfOnly : public LightSource {
+ public:
+  explicit BsdfOnly(const Probe& probe) : probe_(probe) {}
+
+  void sample(const LightPoint&, const PixelSampler&,
+              std::vector<DirectionSample>&) const override {}
+  Escaped escaped(const LightPoint&, const vec3& wi) const override {
+    return {probe_.radiance(wi), 0};
   }
   Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   bool unbiased() const override { return true; }

@@ -5,6 +5,10 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+#include <span>
+#include <vector>
+
 namespace chromeball {
 
 // Of a symmetric matrix: ascending eigenvalues, and unit eigenvectors as columns.
@@ -24,5 +28,33 @@ Eigen::VectorXd solveSymmetric(const Eigen::MatrixXd& matrix, const Eigen::Vecto
 
 // x with the least |matrix x - right|.
 Eigen::VectorXd solveLeastSquares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+
+// Linear least squares by the normal equations: for problems of few unknowns and many rows, whose
+// matrix is too large to keep.
+
+class LeastSquares {
+ public:
+  explicit LeastSquares(int unknowns);
+
+  struct Term {
+    int unknown;
+    double coefficient;
+  };
+  // One more equation: sum of coefficient x unknown = target; its error counts `weight` (>= 0)
+  // times.
+  void add(std::span<const Term> row, double target, double weight = 1);
+
+  // The unknowns with the least weighted sum of squared errors; nullopt if the equations do not
+  // determine all of them. The normal equations square the condition of the problem.
+  std::optional<std::vector<double>> solve() const;
+
+  // The diagonal of the normal matrix's inverse: the variances of the unknowns where the targets of
+  // the equations have independent errors of variance 1 / weight. nullopt as of solve().
+  std::optional<std::vector<double>> variances() const;
+
+ private:
+  int unknowns_;
+  std::vector<double> matrix_, right_;  // row by row, lower triangle; right-hand side
+};
 
 }  // namespace chromeball

@@ -4,10 +4,11 @@
 // Use std::max and std::min: fmax and fmin are function calls without -ffast-math.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 namespace chromeball {
 
@@ -29,6 +30,42 @@ inline vec3 absolute(const vec3& v) { return {std::fabs(v.x), std::fabs(v.y), st
 inline bool isBlack(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 inline bool isFinite(const Rgb& c) {
   return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
+}
+
+// An orthonormal basis around a normal.
+
+// Columns x, y, z of the rotation that takes local +z to the normal (Duff et al. 2017, "Building an
+// Orthonormal Basis, Revisited").
+struct Frame {
+  vec3 x, y, z;
+
+  explicit Frame(const vec3& normal) : z(normal) {
+    const float sign = std::copysign(1.0f, z.z);
+    const float a = -1 / (sign + z.z), b = z.x * z.y * a;
+    x = {1 + sign * z.x * z.x * a, sign * b, -sign * z.x};
+    y = {b, sign + z.y * z.y * a, -z.y};
+  }
+
+  // With local +x along the component of the tangent that is perpendicular to the normal; any x if
+  // there is none.
+  Frame(const vec3& normal, const vec3& tangent) : Frame(normal) {
+    const vec3 along = tangent - normal * glm::dot(normal, tangent);
+    const float length2 = glm::dot(along, along);
+    if (!(length2 > 1e-12f)) return;
+    x = along / std::sqrt(length2);
+    y = glm::cross(z, x);
+  }
+
+  vec3 toLocal(const vec3& v) const { return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, z)}; }
+  vec3 toWorld(const vec3& v) const { return v.x * x + v.y * y + v.z * z; }
+};
+
+// Directions of vectors whose squared length may exceed the range of a double.
+
+// The direction of a finite vector; 0 for 0.
+inline glm::dvec3 unitOrZero(const glm::dvec3& v) {
+  const double longest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  return longest > 0 ? glm::normalize(v / longest) : glm::dvec3(0);
 }
 
 }  // namespace chromeball

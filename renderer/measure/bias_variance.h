@@ -5,7 +5,7 @@
 #include <span>
 
 #include "image/image.h"
-#include "measure/estimate.h"
+#include "measure/statistics.h"
 
 namespace chromeball {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "measure/estimate.h"
+#include "measure/statistics.h"
 
 namespace chromeball {
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 
-#include "base/file_lock.h"
+#include "base/file.h"
 #include "base/message.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "parts/render_part.h"
 #include "render/render_state.h"
 #include "session/run_job.h"

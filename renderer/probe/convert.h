@@ -2,6 +2,8 @@
 // Resampling from one omnidirectional mapping to another.
 #pragma once
 
+#include <functional>
+
 #include "image/image.h"
 #include "math/rotation.h"
 #include "probe/mapping.h"
@@ -30,5 +32,13 @@ Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& siz
 // Converts a cube map or disc to a lat-long map of latLongSize(). `rotation` may be any rotation:
 // direction d of the source becomes rotation * d.
 Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation);
+
+// Images of functions of direction, in any mapping.
+
+// Each texel is the mean of `radiance` over its solid angle, from samplesPerSide^2 samples; black
+// where the mapping shows no direction. Three channels. `radiance` takes unit directions and is
+// called concurrently.
+Image rasterize(Mapping mapping, const ImageSize& size, int samplesPerSide,
+                const std::function<dvec3(const dvec3&)>& radiance);
 
 }  // namespace chromeball

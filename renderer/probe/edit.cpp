@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/edit.h"
 
+#include <complex>
+#include <vector>
+
+#include "base/parallel.h"
+
 namespace chromeball {
 namespace {
 
@@ -56,6 +61,63 @@ void clip(Image& latLong, float limit) {
   for (int y = 0; y < latLong.height; ++y)
     for (int x = 0; x < latLong.width; ++x)
       latLong.setRgb(x, y, glm::min(latLong.rgb(x, y), Rgb(limit)));
+}
+
+namespace {
+
+// The Fourier series of one channel of a row, about its azimuth: coefficients 0 to (width - 1) / 2.
+class RowSeries {
+ public:
+  RowSeries(const Image& image, int row, int channel)
+      : coefficients_(size_t(image.width + 1) / 2), turn_(size_t(image.width)) {
+    const auto width = size_t(image.width);
+    for (size_t i = 0; i < width; ++i) turn_[i] = std::polar(1.0, 2 * kPiD * double(i) / width);
+    parallelFor(size_t(0), coefficients_.size(), [&](size_t m) {
+      std::complex<double> sum = 0;
+      for (size_t x = 0; x < width; ++x)
+        sum += double(image.at(int(x), row)[channel]) * std::conj(turn_[m * x % width]);
+      coefficients_[m] = sum / double(width);
+    });
+    minimum_ = maximum_ = image.at(0, row)[channel];
+    for (int x = 1; x < image.width; ++x) {
+      minimum_ = std::min(minimum_, image.at(x, row)[channel]);
+      maximum_ = std::max(maximum_, image.at(x, row)[channel]);
+    }
+  }
+
+  // The harmonic function in the disc that this row bounds, at `radius` below 1 in the plane: each
+  // coefficient m times radius^m. It is within the range of the row, but for the terms left out.
+  float inside(double radius, int column) const {
+    constexpr double kNegligible = 1e-5;
+    double sum = coefficients_[0].real(), power = radius;
+    for (size_t m = 1; m < coefficients_.size() && power > kNegligible; ++m, power *= radius)
+      sum += 2 * power * (coefficients_[m] * turn_[m * size_t(column) % turn_.size()]).real();
+    return std::clamp(float(sum), minimum_, maximum_);
+  }
+
+ private:
+  std::vector<std::complex<double>> coefficients_, turn_;
+  float minimum_ = 0, maximum_ = 0;
+};
+
+}  // namespace
+
+// Harmonic functions stay so under the stereographic projection from the zenith, which takes the
+// angle a from the nadir to the radius tan(a / 2).
+int fillNadir(Image& latLong, double radius) {
+  const auto angle = [&](int row) { return kPiD * (latLong.height - row - 0.5) / latLong.height; };
+  int first = latLong.height;
+  while (first > 0 && angle(first - 1) < radius * kPiD / 180) --first;
+  if (first == latLong.height || first == 0) return 0;
+  const double rim = std::tan(0.5 * angle(first - 1));
+  for (int channel = 0; channel < 3; ++channel) {
+    const RowSeries series(latLong, first - 1, channel);
+    parallelFor(first, latLong.height, [&](int y) {
+      for (int x = 0; x < latLong.width; ++x)
+        latLong.at(x, y)[channel] = series.inside(std::tan(0.5 * angle(y)) / rim, x);
+    });
+  }
+  return latLong.height - first;
 }
 
 }  // namespace chromeball

@@ -2,7 +2,7 @@
 #include "probe/map_moments.h"
 
 #include "base/parallel.h"
-#include "probe/arc_integrals.h"
+#include "probe/irradiance.h"
 
 namespace chromeball {
 namespace {

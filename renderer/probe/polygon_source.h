@@ -5,10 +5,12 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "image/image.h"
 #include "math/spherical_polygon.h"
+#include "probe/load.h"
 
 namespace chromeball {
 
@@ -42,5 +44,16 @@ struct PolygonExtraction {
 };
 PolygonExtraction extractPolygons(const Image& latLong,
                                   const std::vector<SphericalPolygon>& polygons);
+
+// Polygons of a probe by their corners in its image.
+
+using PolygonCorners = std::vector<glm::dvec2>;  // pixels of the probe's image, from its top left
+
+// The polygon with these corners in the image of a probe's file, with great circles as edges.
+// Throws InputError, which starts with `location`.
+SphericalPolygon polygonOf(const PolygonCorners& corners, const LoadedProbe& probe,
+                           const std::string& location);
+// The corners in that image.
+PolygonCorners cornersOf(const SphericalPolygon& polygon, const LoadedProbe& probe);
 
 }  // namespace chromeball

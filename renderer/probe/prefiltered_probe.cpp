@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/error.h"
+#include "base/suggest.h"
+#include "probe/convert.h"
 #include "probe/convolve.h"
 #include "probe/irradiance.h"
 
@@ -49,6 +52,66 @@ Rgb PrefilteredProbe::radiance(const vec3& direction, float roughness) const {
   if (t < 1) sum += (1 - t) * (above == 0 ? probe_ : levels_[above - 1].map).radiance(direction);
   if (t > 0) sum += t * (isLast ? diffuse_ : levels_[above].map).radiance(direction);
   return sum;
+}
+
+namespace {
+
+constexpr int kSmallestFace = 16;
+
+// The texel of Mapping::VerticalStrip, whose faces are seen from inside and upright, that OpenGL
+// has at (x, y) of a face (OpenGL 4.6, table 8.19): sides are mirrored, top and bottom turned over.
+glm::ivec2 stripTexel(int size, int face, int x, int y) {
+  const bool isSide = face != 2 && face != 3;
+  return {isSide ? size - 1 - x : x, face * size + (isSide ? y : size - 1 - y)};
+}
+
+// Calls `visit` with the texel of the strip for each texel of the faces, row by row.
+template <class Visit>
+void forFaceTexels(int size, const Visit& visit) {
+  for (int face = 0; face < 6; ++face)
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) visit(stripTexel(size, face, x, y));
+}
+
+Image faces(const Image& latLong, int size) {
+  const ImageSize strip{size, 6 * size};
+  const Image upright = convert(latLong, Mapping::LatLong, Mapping::VerticalStrip, strip);
+  std::vector<dvec3> colors;
+  forFaceTexels(size, [&](const glm::ivec2& t) { colors.emplace_back(upright.rgb(t.x, t.y)); });
+  return imageOf(strip, colors);
+}
+
+Image convolvedFaces(const Image& latLong, int size, const ZonalKernel& kernel) {
+  const ImageSize strip{size, 6 * size};
+  std::vector<vec3> directions;
+  forFaceTexels(size, [&](const glm::ivec2& t) {
+    directions.emplace_back(*uvToDirection(Mapping::VerticalStrip,
+                                           (dvec2(t) + 0.5) / dvec2(strip.width, strip.height)));
+  });
+  return imageOf(strip, convolve(latLong, kernel, directions));
+}
+
+}  // namespace
+
+MipRoughness parseMipRoughness(std::string_view text, std::string_view location) {
+  if (text == "khronos") return MipRoughness::Khronos;
+  if (text == "filament") return MipRoughness::Filament;
+  throwInput("{}: unknown roughness of levels `{}`; {}", location, text,
+             didYouMean(text, {"khronos", "filament"}));
+}
+
+std::vector<CubeLevel> cubeMips(const Image& latLong, int size, MipRoughness roughness) {
+  if (size < 1 || size > 4096 || !std::has_single_bit(unsigned(size)))
+    throwInput("faces of {0}x{0} texels: the size should be a power of two from 1 to 4096", size);
+  std::vector<CubeLevel> levels{{0, faces(latLong, size)}};
+  const int smallest = std::min(size, kSmallestFace);
+  const double last = std::bit_width(unsigned(size / smallest)) - 1;
+  for (int face = size / 2; face >= smallest; face /= 2) {
+    const double t = double(levels.size()) / last;
+    const double r = roughness == MipRoughness::Khronos ? t : 1 - std::sqrt(1 - t);
+    levels.push_back({r, convolvedFaces(latLong, face, ZonalKernel::ggx(r))});
+  }
+  return levels;
 }
 
 }  // namespace chromeball

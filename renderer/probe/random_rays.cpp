@@ -2,7 +2,7 @@
 #include "probe/random_rays.h"
 
 #include "base/parallel.h"
-#include "probe/arc_integrals.h"
+#include "probe/irradiance.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "probe/rasterize.h"
+#include "probe/convert.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {

@@ -7,10 +7,10 @@
 #include <limits>
 #include <optional>
 
-#include "probe/bright_region.h"
 #include "probe/mapping.h"
 #include "probe/polygon_source.h"
 #include "probe/solid_angle.h"
+#include "probe/sun_extraction.h"
 
 namespace chromeball {
 namespace {

@@ -4,11 +4,35 @@
 #include <algorithm>
 #include <cmath>
 
-#include "probe/bright_region.h"
 #include "probe/sky.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {
+namespace {
+
+double sinOfRadius(const Sun& sun) { return std::sin(sun.angle * (kPiD / 360)); }
+
+}  // namespace
+
+glm::dvec3 Sun::radiance() const {
+  const double sine = sinOfRadius(*this);
+  return irradiance / (kPiD * sine * sine);
+}
+
+// Lagarde and de Rousiers, "Moving Frostbite to Physically Based Rendering" (2014), the function
+// illuminanceSphereOrDisk.
+glm::dvec3 Sun::irradianceOn(const glm::dvec3& normal) const {
+  const double cosine = glm::dot(normal, direction), sinRadius = sinOfRadius(*this);
+  if (cosine >= sinRadius) return irradiance * cosine;
+  if (cosine <= -sinRadius) return glm::dvec3(0);
+  const double square = sinRadius * sinRadius, x = std::sqrt(1 / square - 1);
+  const double sine = std::sqrt(1 - cosine * cosine);
+  const double y = std::clamp(-x * cosine / sine, -1.0, 1.0);
+  const double chord = sine * std::sqrt(1 - y * y);
+  const double seen = (cosine * std::acos(y) - x * chord) * square + std::atan(chord / x);
+  return irradiance * (seen / (kPiD * square));
+}
+
 namespace {
 
 constexpr double kContrast = 2000, kMinContrast = 10;  // times the mean luminance
@@ -213,6 +237,26 @@ SunExtraction extractSuns(const Image& latLong) {
     return luminance(Rgb(a.irradiance)) > luminance(Rgb(b.irradiance));
   });
   return result;
+}
+
+std::vector<Texel> gatherRegion(const Image& latLong, Texel start, double threshold,
+                                std::vector<bool>& visited) {
+  std::vector<Texel> region;
+  const auto visit = [&](int x, int y) {
+    x = (x + latLong.width) % latLong.width;
+    const size_t index = size_t(y) * latLong.width + x;
+    if (visited[index] || luminance(latLong.rgb(x, y)) <= threshold) return;
+    visited[index] = true;
+    region.push_back({x, y});
+  };
+  visit(start.x, start.y);
+  for (size_t i = 0; i < region.size(); ++i) {
+    const Texel t = region[i];
+    for (int y = t.y - 1; y <= t.y + 1; ++y)
+      if (y >= 0 && y < latLong.height)
+        for (int dx = -1; dx <= 1; ++dx) visit(t.x + dx, y);
+  }
+  return region;
 }
 
 }  // namespace chromeball

@@ -5,9 +5,22 @@
 #include <vector>
 
 #include "image/image.h"
-#include "probe/sun.h"
+#include "math/vec.h"
 
 namespace chromeball {
+
+// A sun: a distant disc of constant radiance.
+
+struct Sun {
+  glm::dvec3 direction;   // unit, towards its centre
+  glm::dvec3 irradiance;  // on a surface that faces it
+  double angle;           // angular diameter, degrees; above 0
+
+  glm::dvec3 radiance() const;  // irradiance / (pi sin^2(angle / 2))
+
+  // Irradiance on a surface with unit `normal`, whose horizon may cut the disc.
+  glm::dvec3 irradianceOn(const glm::dvec3& normal) const;
+};
 
 struct SunExtraction {
   std::vector<Sun> suns;  // in order of decreasing irradiance
@@ -27,5 +40,17 @@ struct SunExtraction {
 //
 // `latLong` is finite and not negative, and has at least three channels.
 SunExtraction extractSuns(const Image& latLong);
+
+// Connected bright texels of a lat-long map.
+
+struct Texel {
+  int x, y;
+};
+
+// The texels with a luminance above `threshold` and not yet `visited` that are connected to `start`
+// by eight neighbours, across the seam too. A source that covers a pole fills the row there, which
+// connects it. Marks them as visited.
+std::vector<Texel> gatherRegion(const Image& latLong, Texel start, double threshold,
+                                std::vector<bool>& visited);
 
 }  // namespace chromeball

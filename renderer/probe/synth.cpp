@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "probe/rasterize.h"
+#include "probe/convert.h"
 
 namespace chromeball {
 namespace {

@@ -8,7 +8,7 @@
 #include "film/film.h"
 #include "render/render.h"
 #include "render/render_settings.h"
-#include "scene/moving_camera.h"
+#include "scene/camera.h"
 #include "transport/integrator.h"
 
 namespace chromeball {

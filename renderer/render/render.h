@@ -6,7 +6,6 @@
 
 #include "base/progress.h"
 #include "film/aov.h"
-#include "film/feature_film.h"
 #include "film/film.h"
 #include "film/layer_film.h"
 #include "render/guide_training.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "base/archive.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "film/film.h"
 #include "render/render_settings.h"
 

@@ -1,10 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/camera.h"
 
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+
 #include "base/error.h"
 #include "math/warp.h"
+#include "scene/motion.h"
 
 namespace chromeball {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The smallest positive root of 1 + b t + a t^2; infinite if there is none.
+double firstRoot(double a, double b) {
+  const double discriminant = b * b - 4 * a;
+  if (discriminant < 0) return kInfinity;
+  // The product of the roots is 1 / a, so that neither needs a difference of like numbers.
+  const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
+  double first = kInfinity;
+  for (const double root : {q / a, 1 / q})
+    if (root > 0 && root < first) first = root;
+  return first;
+}
+
+}  // namespace
+
+double Distortion::fold() const { return std::sqrt(firstRoot(5 * k2, 3 * k1)); }
+
+double Distortion::distortedFold() const {
+  const double radius = fold();
+  return std::isinf(radius) ? radius : distorted(radius);
+}
+
+// Newton's method, and bisection where it leaves the interval that holds the root.
+double Distortion::undistorted(double radius) const {
+  constexpr int kMaxSteps = 100;
+  double low = 0, high = fold();
+  if (!reaches(radius)) return high;
+  if (std::isinf(high))
+    for (high = radius; distorted(high) < radius;) high *= 2;
+  double r = radius < high ? radius : 0.5 * high;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const double excess = distorted(r) - radius;
+    (excess > 0 ? high : low) = r;
+    double next = r - excess / slope(r);
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    if (std::abs(next - r) <= 1e-15 * r) return next;
+    r = next;
+  }
+  return r;
+}
 
 CameraRays::CameraRays(const Camera& camera, float aspectRatio)
     : orthographic_(camera.orthographic),
@@ -98,6 +146,27 @@ Camera Camera::turnedAround(const vec3& centre, double degrees) const {
   turned.up = vec3(turn * glm::dvec3(up));
   turned.back = vec3(turn * glm::dvec3(back));
   return turned;
+}
+
+MovingCamera::MovingCamera(const Camera& camera, float aspectRatio)
+    : lens_(camera), aspectRatio_(aspectRatio) {
+  lens_.name.clear(), lens_.node.clear();  // at() must not allocate
+  lens_.motion = nullptr;
+  for (const Camera& key : *camera.motion)
+    keys_.push_back(
+        {key.position, glm::quat_cast(mat3(key.right, key.up, key.back)), key.fov, key.halfHeight});
+}
+
+Camera MovingCamera::cameraAt(float time) const {
+  const KeySpan span = keysAround(keys_.size(), time);
+  const Key &from = keys_[span.from], &to = keys_[span.to];
+  const mat3 frame = glm::mat3_cast(glm::slerp(from.frame, to.frame, span.fraction));
+  Camera camera = lens_;
+  camera.position = glm::mix(from.position, to.position, span.fraction);
+  camera.right = frame[0], camera.up = frame[1], camera.back = frame[2];
+  camera.fov = glm::mix(from.fov, to.fov, span.fraction);
+  camera.halfHeight = glm::mix(from.halfHeight, to.halfHeight, span.fraction);
+  return camera;
 }
 
 }  // namespace chromeball

@@ -7,9 +7,42 @@
 #include <vector>
 
 #include "math/vec.h"
-#include "scene/distortion.h"
 
 namespace chromeball {
+
+// Radial distortion of a lens.
+
+// The point (x, y) of the plane at distance 1 in front of the lens appears where a pinhole would
+// show (1 + k1 r^2 + k2 r^4) (x, y), with r^2 = x^2 + y^2 (Brown 1971, the radial terms; the
+// coefficients of OpenCV). Negative k1 is a barrel. A radius is that of a point in this plane,
+// before (undistorted) or after (distorted) the lens.
+struct Distortion {
+  double k1 = 0, k2 = 0;
+
+  explicit operator bool() const { return k1 != 0 || k2 != 0; }
+  bool operator==(const Distortion&) const = default;
+
+  double factor(double r2) const { return 1 + r2 * (k1 + r2 * k2); }
+  double distorted(double radius) const { return radius * factor(radius * radius); }
+  // The derivative of distorted().
+  double slope(double radius) const {
+    const double r2 = radius * radius;
+    return 1 + r2 * (3 * k1 + r2 * 5 * k2);
+  }
+
+  // The undistorted radius at which the picture folds back: distorted() ascends up to there.
+  // Infinite if it always ascends.
+  double fold() const;
+
+  // Whether one point, and no other before the fold, appears at this distorted radius.
+  bool reaches(double radius) const { return radius < distortedFold(); }
+
+  // The inverse of distorted() before the fold; the fold if no point appears at `radius`.
+  double undistorted(double radius) const;
+
+ private:
+  double distortedFold() const;
+};
 
 // Looks along -Z of its frame, +Y up (glTF's convention). Positions in metres.
 struct Camera {
@@ -27,7 +60,7 @@ struct Camera {
   // the height is tan(fov / 2) focal lengths.
   vec2 principalPoint{0.5f, 0.5f};
   Distortion distortion;
-  // Its keys while the shutter is open (scene/moving_camera.h); null: it stands still.
+  // Its keys while the shutter is open (scene/camera.h); null: it stands still.
   std::shared_ptr<const std::vector<Camera>> motion = nullptr;
 
   // Throws InputError if position and target coincide or if up is parallel to the view.
@@ -97,6 +130,29 @@ class CameraRays {
   float lensRadius_, focus_;
   bool distorts_;
   Distortion distortion_;
+};
+
+// The rays of a camera that moves while the shutter is open.
+
+// Between two keys (scene/motion.h) the position moves along a straight line, and the frame turns
+// about one axis at constant speed.
+class MovingCamera {
+ public:
+  // For an image of the given width / height. The camera has a motion.
+  MovingCamera(const Camera& camera, float aspectRatio);
+
+  Camera cameraAt(float time) const;  // stands still
+  CameraRays at(float time) const { return {cameraAt(time), aspectRatio_}; }
+
+ private:
+  struct Key {
+    vec3 position;
+    glm::quat frame;  // turns the axes to right, up and back
+    float fov, halfHeight;
+  };
+  Camera lens_;  // what does not move
+  float aspectRatio_;
+  std::vector<Key> keys_;
 };
 
 }  // namespace chromeball

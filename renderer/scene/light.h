@@ -3,11 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "math/vec.h"
-#include "probe/sun.h"
+#include "probe/sun_extraction.h"
 
 namespace chromeball {
 
@@ -66,6 +67,19 @@ struct AmbientLamp {
   Rgb radiance{0};
   bool isVisible = true;  // to the camera and mirrors
   std::string name = {};
+};
+
+// Lamps that a scene file adds to the models ([[light]]).
+
+// Exactly one of `punctual`, `disc`, `sun` and `ambient` is set.
+struct Lamp {
+  std::string name;  // of its node
+  // In the world, metres; of a punctual light or disc, whose own is not used.
+  glm::dvec3 position{0};
+  std::optional<PunctualLight> punctual;
+  std::optional<DiscLamp> disc;
+  std::optional<SunLamp> sun;
+  std::optional<AmbientLamp> ambient;
 };
 
 }  // namespace chromeball

@@ -5,10 +5,42 @@
 #include <optional>
 #include <string>
 
-#include "scene/extended_material.h"
 #include "scene/texture.h"
 
 namespace chromeball {
+
+// Parameters of the glTF material extensions. A plain metallic-roughness material has none of them.
+
+struct ExtendedMaterial {
+  // KHR_materials_transmission, _volume and _dispersion
+  float transmission = 0;  // fraction of the dielectric base that transmits instead of scattering
+  bool thinWalled = true;  // a thin sheet; if false, the mesh bounds a body and refracts
+  Rgb attenuation{0};      // in the body, 1/m: transmittance over s metres is exp(-attenuation s)
+  float dispersion = 0;    // 20 / Abbe number
+  TextureSlot transmissionTexture;  // R
+
+  // KHR_materials_clearcoat: a dielectric layer of index 1.5 on top of all other layers
+  float clearcoat = 0, clearcoatRoughness = 0, clearcoatNormalScale = 1;
+  TextureSlot clearcoatTexture;           // R
+  TextureSlot clearcoatRoughnessTexture;  // G
+  TextureSlot clearcoatNormalTexture;
+
+  // KHR_materials_sheen
+  Rgb sheenColor{0};
+  float sheenRoughness = 0;
+  TextureSlot sheenColorTexture;      // sRGB
+  TextureSlot sheenRoughnessTexture;  // A
+
+  // KHR_materials_anisotropy
+  float anisotropy = 0,
+        anisotropyRotation = 0;   // strength; radians from the tangent, counter-clockwise
+  TextureSlot anisotropyTexture;  // RG direction, B strength
+
+  // KHR_materials_iridescence: a thin film; thickness in nanometres
+  float iridescence = 0, filmIor = 1.3f, filmMinThickness = 100, filmMaxThickness = 400;
+  TextureSlot iridescenceTexture;    // R
+  TextureSlot filmThicknessTexture;  // G, from minimum to maximum; without it, the maximum
+};
 
 class Projection;
 
@@ -44,7 +76,7 @@ struct Material {
   bool doubleSided = false;
   SingleSided singleSided = SingleSided::Camera;  // ignored if doubleSided
   bool unlit = false;  // KHR_materials_unlit: emits its base colour, reflects nothing
-  // Shadow rays pass the smooth body without refraction (thin_wall.h).
+  // Shadow rays pass the smooth body without refraction (extended_surface.h).
   bool straightShadows = false;
 
   // Whether the back is invisible to the camera and mirrors.

@@ -2,12 +2,13 @@
 #include "scene/mesh_attributes.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <mutex>
 #include <utility>
 
 #include "base/parallel.h"
-#include "scene/linear_map.h"
+#include "scene/transform.h"
 
 namespace chromeball {
 namespace {
@@ -138,6 +139,111 @@ void transformMesh(Mesh& mesh, const glm::dmat4& transform) {
   if (isMirrored)
     for (Triangle& t : mesh.triangles) std::swap(t.y, t.z);
   placeNormals(mesh, normalMatrix(linear));
+  repairTangents(mesh);
+}
+
+// Tangents for meshes without them. As in MikkTSpace, a vertex's tangent is the mean of dP/du over
+// its triangles, each projected onto the plane of the vertex normal, normalised and weighted by the
+// triangle's angle at the vertex; triangles whose UV coordinates turn opposite ways are not mixed.
+// Unlike MikkTSpace, the indices of the file decide which triangles share a vertex: identical
+// vertices with different indices are not merged, and triangles around a vertex are not grouped by
+// shared edges.
+
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+// Which way UV space is turned in a triangle. Unlike handedness, which also depends on the side
+// that a vertex normal is on, it is the same in all poses of a mesh: these are split alike.
+enum Winding { kClockwise = 0, kCounter = 1, kUndefined = 2 };  // as (x, y); no area
+
+dvec3 directionOrZero(const dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0 && std::isfinite(length) ? v / length : dvec3(0);
+}
+
+double cornerAngle(const std::array<dvec3, 3>& p, int k) {
+  const dvec3 a = directionOrZero(p[(k + 1) % 3] - p[k]),
+              b = directionOrZero(p[(k + 2) % 3] - p[k]);
+  return std::acos(std::fmin(std::fmax(glm::dot(a, b), -1.0), 1.0));
+}
+
+// What a triangle adds to the frames of its three corners.
+struct Contribution {
+  Winding winding = kUndefined;
+  std::array<dvec3, 3> tangent{};      // along dP/du; its length is the corner's angle
+  std::array<double, 3> handedness{};  // with the same weight; positive: right-handed
+};
+
+Contribution contributionOf(const Mesh& mesh, const std::vector<vec2>& uv, const Triangle& t) {
+  const std::array<dvec3, 3> p{mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
+  const dvec2 d1 = dvec2(uv[t.y]) - dvec2(uv[t.x]), d2 = dvec2(uv[t.z]) - dvec2(uv[t.x]);
+  const double area = d1.x * d2.y - d2.x * d1.y;  // twice the signed area in UV space
+  Contribution c;
+  if (!(std::fabs(area) > 0) || !std::isfinite(area)) return c;
+  c.winding = area < 0 ? kClockwise : kCounter;
+
+  const dvec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
+  const dvec3 alongU = (e1 * d2.y - e2 * d1.y) * (area < 0 ? -1.0 : 1.0);  // dP/du, any length
+  const dvec3 front = glm::cross(e1, e2);
+  for (int k = 0; k < 3; ++k) {
+    const dvec3 n = mesh.normals[t[k]];
+    const double angle = cornerAngle(p, k);
+    c.tangent[k] = directionOrZero(alongU - n * glm::dot(n, alongU)) * angle;
+    // A normal map's +Y points up in the image, against v.
+    const bool isRight = (area < 0) == (glm::dot(front, n) >= 0);
+    c.handedness[k] = isRight ? angle : -angle;
+  }
+  return c;
+}
+
+// The sums of what the triangles of one winding add to a vertex.
+struct VertexFrame {
+  dvec3 tangent{0};
+  double handedness = 0;
+  bool isUsed = false;
+
+  void add(const Contribution& c, size_t corner) {
+    tangent += c.tangent[corner];
+    handedness += c.handedness[corner];
+    isUsed = true;
+  }
+};
+
+}  // namespace
+
+void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
+  const size_t vertexCount = mesh.positions.size();
+  std::vector<std::array<VertexFrame, 2>> frames(vertexCount);
+  std::vector<Winding> windings;
+  for (const Triangle& t : mesh.triangles) {
+    const Contribution c = contributionOf(mesh, uv, t);
+    windings.push_back(c.winding);
+    if (c.winding == kUndefined) continue;
+    for (int k = 0; k < 3; ++k) frames[t[k]][c.winding].add(c, size_t(k));
+  }
+
+  // If a vertex has triangles of both kinds, the counter-clockwise ones get a copy of the vertex.
+  std::vector<uint32_t> source(vertexCount), copy(vertexCount);
+  for (uint32_t i = 0; i < vertexCount; ++i) source[i] = copy[i] = i;
+  for (uint32_t i = 0; i < vertexCount; ++i) {
+    if (!frames[i][kClockwise].isUsed || !frames[i][kCounter].isUsed) continue;
+    copy[i] = uint32_t(source.size());
+    source.push_back(i);
+  }
+  for (size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (windings[i] == kCounter)
+      for (int k = 0; k < 3; ++k) mesh.triangles[i][k] = copy[mesh.triangles[i][k]];
+  gatherVertices(mesh, source);
+
+  mesh.tangents.resize(source.size());
+  for (uint32_t i = 0; i < source.size(); ++i) {
+    const std::array<VertexFrame, 2>& both = frames[source[i]];
+    const VertexFrame& frame =
+        both[i >= vertexCount || !both[kClockwise].isUsed ? kCounter : kClockwise];
+    mesh.tangents[i] = vec4(vec3(directionOrZero(frame.tangent)), frame.handedness < 0 ? -1 : 1);
+  }
   repairTangents(mesh);
 }
 

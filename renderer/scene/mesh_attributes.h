@@ -35,7 +35,7 @@ void repairTangents(Mesh& mesh);
 void computeTangents(Mesh& mesh, const std::vector<vec2>& uv);
 
 // Applies an affine transform, which may flatten the mesh. Normals are transformed by
-// normalMatrix() (linear_map.h). If the transform mirrors, the winding of the triangles and the
+// normalMatrix() (transform.h). If the transform mirrors, the winding of the triangles and the
 // sign of the tangents are inverted, so that front faces stay front faces.
 void transformMesh(Mesh& mesh, const glm::dmat4& transform);
 

@@ -3,8 +3,8 @@
 
 #include <limits>
 
+#include "scene/camera_view.h"
 #include "scene/extended_surface.h"
-#include "scene/projection.h"
 
 namespace chromeball {
 namespace {

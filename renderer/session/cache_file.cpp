@@ -6,10 +6,10 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/archive.h"
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/memory_archive.h"
 #include "session/job_description.h"
 
 namespace chromeball {

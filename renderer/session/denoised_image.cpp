@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/stopwatch.h"
+#include "base/progress.h"
 
 namespace chromeball {
 

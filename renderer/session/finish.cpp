@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <map>
 
-#include "composite/denoise_composite.h"
+#include "composite/compose.h"
 #include "composite/layers.h"
 #include "film/rows.h"
-#include "relight/light_layers.h"
+#include "relight/stage/light_layers.h"
 
 namespace chromeball {
 namespace {

@@ -2,7 +2,7 @@
 // Estimates the memory of a render before it is allocated.
 #pragma once
 
-#include "base/memory_budget.h"
+#include "base/memory.h"
 #include "render/render.h"
 
 namespace chromeball {

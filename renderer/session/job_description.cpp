@@ -8,7 +8,7 @@
 #include <bit>
 #include <filesystem>
 
-#include "base/file_hash.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/json_text.h"

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "base/message.h"
-#include "composite/objects.h"
-#include "composite/plate_scale.h"
+#include "composite/differential.h"
+#include "composite/plate.h"
 #include "description/render_description.h"
 #include "lighting/strategy.h"
 #include "probe/load.h"
-#include "scene/projection.h"
+#include "scene/camera_view.h"
 #include "scene/scene.h"
 #include "session/choose_camera.h"
 #include "session/scene_lighting.h"

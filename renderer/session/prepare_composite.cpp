@@ -6,7 +6,6 @@
 #include "composite/ground.h"
 #include "composite/local_scene.h"
 #include "composite/plate.h"
-#include "composite/plate_scale.h"
 #include "composite/reflectance.h"
 #include "description/render_description.h"
 #include "session/load_scene.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "session/cache_file.h"
 #include "session/memory_estimate.h"
 #include "session/run_composite.h"

@@ -8,7 +8,7 @@
 #include "lighting/finite_surroundings.h"
 #include "lighting/split_probe.h"
 #include "probe/irradiance.h"
-#include "probe/polygon_corners.h"
+#include "probe/polygon_source.h"
 #include "session/load_scene.h"
 
 namespace chromeball {

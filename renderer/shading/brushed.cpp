@@ -2,9 +2,9 @@
 #include "shading/brushed.h"
 
 #include "math/warp.h"
+#include "shading/bsdf_sample.h"
 #include "shading/fresnel.h"
 #include "shading/ggx_anisotropic.h"
-#include "shading/shading_normal.h"
 
 namespace chromeball {
 

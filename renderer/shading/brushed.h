@@ -2,7 +2,7 @@
 // Metallic-roughness with grooves (KHR_materials_anisotropy).
 #pragma once
 
-#include "math/frame.h"
+#include "math/vec.h"
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "scene/material.h"
-#include "shading/anisotropic_table.h"
 #include "shading/energy_table.h"
 #include "shading/glass_table.h"
 #include "shading/sheen_table.h"

@@ -2,9 +2,9 @@
 #include "shading/glass.h"
 
 #include "math/warp.h"
+#include "shading/bsdf_sample.h"
 #include "shading/fresnel.h"
 #include "shading/ggx.h"
-#include "shading/shading_normal.h"
 
 namespace chromeball {
 namespace {

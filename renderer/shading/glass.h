@@ -2,7 +2,7 @@
 // The boundary of a transmissive body (KHR_materials_volume): light is reflected or refracted.
 #pragma once
 
-#include "math/frame.h"
+#include "math/vec.h"
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"

@@ -2,14 +2,14 @@
 #include "shading/glass_table.h"
 
 #include "base/parallel.h"
-#include "shading/albedo_quadrature.h"
+#include "shading/energy_table.h"
 #include "shading/fresnel.h"
 
 namespace chromeball {
 namespace {
 
 // x = (eta - 1) / (eta + 1) from -1/2 to 1/2, with dense nodes about 0, where refraction vanishes
-// and the critical angle approaches 90 degrees. Roughness and angle as in albedo_quadrature.h.
+// and the critical angle approaches 90 degrees. Roughness and angle as in energy_table.h.
 constexpr float kMaxX = 0.5f, kExponent = 2.5f;
 float etaNode(int i, int count) {
   const float t = 2 * float(i) / float(count - 1) - 1;

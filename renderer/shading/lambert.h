@@ -2,7 +2,7 @@
 // Perfectly diffuse reflection.
 #pragma once
 
-#include "math/frame.h"
+#include "math/vec.h"
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/map_lobes.h"

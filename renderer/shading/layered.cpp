@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/layered.h"
 
-#include "scene/thin_wall.h"
+#include "scene/extended_surface.h"
+#include "shading/fresnel.h"
 #include "shading/ggx.h"
-#include "shading/thin_film.h"
 
 namespace chromeball {
 namespace {

@@ -2,7 +2,7 @@
 // glTF metallic-roughness (glTF 2.0, appendix B), for materials with a specular lobe.
 #pragma once
 
-#include "math/frame.h"
+#include "math/vec.h"
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "math/frame.h"
+#include "math/vec.h"
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"

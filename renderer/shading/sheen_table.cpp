@@ -3,8 +3,8 @@
 
 #include "base/parallel.h"
 #include "math/warp.h"
-#include "shading/albedo_quadrature.h"
 #include "shading/charlie.h"
+#include "shading/energy_table.h"
 
 namespace chromeball {
 namespace {

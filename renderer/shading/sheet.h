@@ -2,7 +2,7 @@
 // Transmission through a sheet without thickness (KHR_materials_transmission without a volume).
 #pragma once
 
-#include "math/frame.h"
+#include "math/vec.h"
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"

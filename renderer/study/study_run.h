@@ -7,6 +7,8 @@
 #include <map>
 #include <memory>
 
+#include "base/message.h"
+#include "measure/bias_variance.h"
 #include "render/render.h"
 #include "session/load_scene.h"
 #include "study/render_store.h"
@@ -68,5 +70,12 @@ class StudyRun {
   std::vector<bool> present_;
   int stored_ = 0;
 };
+
+// The reference image of a study.
+
+// Reads the reference from its file, or takes the mean of its parts from the store, which must have
+// all of them. Throws InputError if the file has no colour or is not of the given size.
+Reference loadReference(const Study& study, const RenderStore& store, int width, int height,
+                        Messages* messages = nullptr);
 
 }  // namespace chromeball

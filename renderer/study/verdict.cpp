@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/estimate_text.h"
+#include "study/result_tables.h"
 
 namespace chromeball {
 namespace {

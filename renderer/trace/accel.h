@@ -82,11 +82,11 @@ class Accel {
   }
 
   // The transmittance along the ray up to tMax: 0, 1, or the product over blended surfaces
-  // (1 - alpha), surfaces that pass shadow rays (scene/thin_wall.h) and absorption. The ray points
-  // towards the light; it passes the front of a surface with Material::backLetsLightThrough().
-  // `attenuation`: in the medium at the ray's origin, 1/m. An infinite ray must leave all bodies
-  // that it is in or enters; else a mesh is open, and nothing is absorbed. `inside`: the bodies
-  // that contain the origin.
+  // (1 - alpha), surfaces that pass shadow rays (scene/extended_surface.h) and absorption. The ray
+  // points towards the light; it passes the front of a surface with
+  // Material::backLetsLightThrough(). `attenuation`: in the medium at the ray's origin, 1/m. An
+  // infinite ray must leave all bodies that it is in or enters; else a mesh is open, and nothing is
+  // absorbed. `inside`: the bodies that contain the origin.
   Rgb transmittance(const Ray& ray, RayMask mask = kAllInstances, const Rgb& attenuation = Rgb(0),
                     std::span<const Material* const> inside = {}) const;
 
@@ -114,5 +114,12 @@ class Accel {
   RTCSceneTy* scene_ = nullptr;
   bool hasFilter_ = false, hasAlpha_ = false, needsMedia_ = false;
 };
+
+// Rays that leave a surface.
+
+// At the time at which the surface is seen.
+inline Ray rayFrom(const Surface& surface, const vec3& direction, float tMax = INFINITY) {
+  return {surface.rayOrigin(direction), direction, tMax, surface.time};
+}
 
 }  // namespace chromeball

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "scene/thin_wall.h"
+#include "scene/extended_surface.h"
 #include "trace/accel.h"
 #include "trace/built_geometry.h"
 #include "trace/filter.h"

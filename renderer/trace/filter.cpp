@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/hash.h"
+#include "scene/extended_surface.h"
 #include "scene/surface.h"
-#include "scene/thin_wall.h"
 #include "trace/ray.h"
 
 namespace chromeball {

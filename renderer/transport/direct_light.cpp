@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "transport/direct_light.h"
 
-#include "scene/thin_wall.h"
-#include "trace/surface_ray.h"
+#include "scene/extended_surface.h"
+#include "trace/accel.h"
 #include "transport/light_groups.h"
 #include "transport/mis.h"
 

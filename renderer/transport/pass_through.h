@@ -2,8 +2,8 @@
 // Surfaces that a path passes without a bounce.
 #pragma once
 
-#include "scene/thin_wall.h"
-#include "trace/surface_ray.h"
+#include "scene/extended_surface.h"
+#include "trace/accel.h"
 #include "transport/path.h"
 
 namespace chromeball {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "trace/surface_ray.h"
+#include "trace/accel.h"
 #include "transport/light_groups.h"
 #include "transport/mis.h"
 #include "transport/pass_through.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <tuple>
 
-#include "scene/plane_offset.h"
+#include "scene/placed_triangles.h"
 #include "transport/pass_through.h"
 #include "transport/path.h"
 

@@ -6,11 +6,11 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
-#include "math/frame.h"
+#include "math/vec.h"
 #include "math/warp.h"
 #include "scene/bounds.h"
 #include "shading/bsdf.h"
-#include "trace/surface_ray.h"
+#include "trace/accel.h"
 #include "transport/media.h"
 
 namespace chromeball {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light stages: the header, the layers of the basis, and bands of rows.
-#include "relight/stage_file.h"
+#include "relight/stage/stage_file.h"
 
 #include <algorithm>
 #include <vector>

@@ -10,7 +10,6 @@
 #include "lighting/constellation/lightgen.h"
 #include "lighting/constellation/median_cut.h"
 #include "lighting/constellation/penrose.h"
-#include "lighting/constellation/variance_cut.h"
 #include "probe/load.h"
 #include "probe/synth.h"
 

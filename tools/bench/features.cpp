@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "lighting/importance.h"
-#include "math/frame.h"
+#include "math/vec.h"
 #include "math/warp.h"
 #include "scene.h"
 #include "transport/mis.h"

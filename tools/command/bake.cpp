@@ -3,12 +3,11 @@
 #include <filesystem>
 
 #include "bake/baked_file.h"
-#include "bake/shown_color.h"
 #include "bake/texel_filter.h"
 #include "bake/vertex_light.h"
 #include "bake_options.h"
 #include "base/error.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "commands.h"
 #include "front/plan_render.h"
 #include "image/io/output_file.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "bake/point_light.h"
+#include "bake/bake.h"
 #include "scene_options.h"
 
 namespace chromeball {

@@ -5,14 +5,14 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "basis_job.h"
 #include "image/io/output_file.h"
 #include "interrupt.h"
 #include "messages.h"
 #include "progress_bar.h"
-#include "relight/render_basis.h"
-#include "relight/stage_file.h"
+#include "relight/stage/render_basis.h"
+#include "relight/stage/stage_file.h"
 #include "render/tile_grid.h"
 #include "session/memory_estimate.h"
 #include "thread_limit.h"

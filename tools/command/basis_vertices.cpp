@@ -5,12 +5,12 @@
 
 #include "bake/baked_file.h"
 #include "base/error.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "basis_job.h"
 #include "image/io/output_file.h"
 #include "messages.h"
 #include "progress_bar.h"
-#include "relight/glossy_model.h"
+#include "relight/transfer/glossy_model.h"
 #include "session/memory_estimate.h"
 #include "thread_limit.h"
 

@@ -16,11 +16,11 @@
 #include "messages.h"
 #include "scene/camera_view.h"
 #include "scene/gltf/load_gltf.h"
-#include "scene/solve/camera_doubts.h"
 #include "scene/solve/fspy.h"
 #include "scene/solve/observations.h"
 #include "scene/solve/picture_lines.h"
 #include "scene/solve/solve_lines.h"
+#include "scene/solve/solved_camera.h"
 
 namespace chromeball {
 namespace {

@@ -16,8 +16,7 @@
 #include "probe/load.h"
 #include "probe/probe.h"
 #include "probe/sun_extraction.h"
-#include "relight/light_layers.h"
-#include "relight/occlusion_layers.h"
+#include "relight/stage/light_layers.h"
 #include "rotation_option.h"
 
 namespace chromeball {

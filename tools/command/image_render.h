@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "parts/checkpoint.h"
 #include "progress_bar.h"
 

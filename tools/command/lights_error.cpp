@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "busy_line.h"
 #include "commands.h"
 #include "image/io/output_file.h"

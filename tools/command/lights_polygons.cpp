@@ -8,7 +8,7 @@
 #include "front/polygon_file.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "lighting/light_preview.h"
+#include "lighting/export/light_preview.h"
 #include "messages.h"
 #include "probe/suggest_polygons.h"
 

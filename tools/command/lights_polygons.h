@@ -6,7 +6,7 @@
 #include <string>
 
 #include "light_options.h"
-#include "lighting/light_file.h"
+#include "lighting/export/light_file.h"
 
 namespace chromeball {
 

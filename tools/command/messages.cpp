@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "base/condense.h"
+#include "base/message.h"
 #include "base/printable.h"
 #include "scene_options.h"
 

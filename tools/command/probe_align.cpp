@@ -11,7 +11,7 @@
 #include "image/io/write_image.h"
 #include "input_image.h"
 #include "messages.h"
-#include "probe/align.h"
+#include "probe/capture/align.h"
 #include "probe/convert.h"
 #include "probe/load.h"
 #include "probe_commands.h"

@@ -7,10 +7,10 @@
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "input_image.h"
-#include "lighting/row_distribution.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "probe_commands.h"
+#include "study/report/row_distribution.h"
 #include "study/report/row_plot.h"
 
 namespace chromeball {

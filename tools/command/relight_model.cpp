@@ -2,17 +2,16 @@
 #include "relight_model.h"
 
 #include "bake/baked_file.h"
-#include "bake/shown_color.h"
 #include "bake/vertex_light.h"
 #include "base/error.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "probe/probe.h"
-#include "relight/escaping_path.h"
-#include "relight/glossy_model.h"
+#include "relight/transfer/escaping_path.h"
+#include "relight/transfer/glossy_model.h"
 
 namespace chromeball {
 namespace {

@@ -5,16 +5,15 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "messages.h"
 #include "probe/load.h"
-#include "relight/light_weights.h"
-#include "relight/reflectance_function.h"
-#include "relight/relit_stage.h"
-#include "relight/stage_photographs.h"
+#include "relight/stage/light_stage.h"
+#include "relight/stage/relit_stage.h"
+#include "relight/stage/stage_photographs.h"
 #include "session/image_memory.h"
 #include "viewers/relight_server.h"
 

@@ -8,7 +8,7 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/printable.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "commands.h"
 #include "front/plan_render.h"
 #include "front/sequence.h"

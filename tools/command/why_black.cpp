@@ -10,7 +10,7 @@
 #include "math/icosphere.h"
 #include "probe/solid_angle.h"
 #include "scene/surface.h"
-#include "trace/surface_ray.h"
+#include "trace/accel.h"
 
 namespace chromeball {
 namespace {

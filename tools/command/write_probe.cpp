@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "base/file.h"
-#include "image/io/lost_light.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/write_image.h"
 #include "image/size_limits.h"

@@ -2,7 +2,7 @@
 // Depth of field after the fact: an image blurred by the circle of confusion of each pixel.
 #pragma once
 
-#include "image/develop/view_frame.h"
+#include "image/develop/vignette.h"
 #include "image/image.h"
 
 namespace chromeball {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image/develop/glare.h"
+#include "image/develop/bloom.h"
 #include "image/develop/vignette.h"
 
 namespace chromeball {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "image/develop/mirrored.h"
-
 namespace chromeball {
 namespace {
 

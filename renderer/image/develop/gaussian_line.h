@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,7 @@ inline constexpr double kMaxExactSigma = 8;
 // The kernel is the integral of the Gaussian over each pixel,
 //   k(d) = (erf((d + 1/2) / (sqrt2 sigma)) - erf((d - 1/2) / (sqrt2 sigma))) / 2,
 // of variance sigma^2 + 1/12; so a square of a x a pixels (a odd) has erf(a / (2 sqrt2 sigma))^2 in
-// its centre. The line is mirrored at its ends (mirrored.h), and its sum is kept.
+// its centre. The line is mirrored at its ends (gaussian_line.h), and its sum is kept.
 //
 // Fast: with f = 2^n, 4 <= sigma / f < 8, cubic B-splines of f pixels per knot reduce the line; a
 // Gaussian of standard deviation s filters it; the same splines interpolate. The variances are
@@ -52,5 +53,17 @@ class GaussianLine {
   std::vector<double> taps_;   // of the distances 0, 1, ... to both sides
   size_t work_ = 1;
 };
+
+// Images beyond their borders: mirrored at the edge of the outermost pixel, again and again.
+
+// The pixel of [0, n) that mirrors show at `i`: ... 1 0 | 0 1 ... n-1 | n-1 n-2 ... Of period 2n.
+// A symmetric filter of sum 1 keeps the sum of an image that continues like this.
+inline int mirrored(int64_t i, int n) {
+  if (i >= 0 && i < n) return int(i);
+  const int64_t period = 2 * int64_t(n);
+  i %= period;
+  if (i < 0) i += period;
+  return int(i < n ? i : period - 1 - i);
+}
 
 }  // namespace chromeball

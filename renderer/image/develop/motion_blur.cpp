@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "image/develop/mirrored.h"
+#include "image/develop/gaussian_line.h"
 
 namespace chromeball {
 namespace {

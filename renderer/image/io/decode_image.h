@@ -32,4 +32,12 @@ DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name)
 // or claims more than the file can hold.
 uint64_t decodedBytes(std::span<const uint8_t> file);
 
+// Decodes WebP by libwebp.
+
+// As decodeImage(), for a WebP file.
+DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name);
+
+// As decodedBytes().
+uint64_t webpBytes(std::span<const uint8_t> file);
+
 }  // namespace chromeball

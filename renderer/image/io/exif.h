@@ -23,7 +23,7 @@ struct Exif {
 // file cannot be read.
 Exif readExif(const std::filesystem::path& path);
 
-// How the image of a JPEG, PNG or TIFF is stored (orientation.h), 1 to 8; 1 if the file does not
+// How the image of a JPEG, PNG or TIFF is stored (image.h), 1 to 8; 1 if the file does not
 // tell.
 int exifOrientation(std::span<const uint8_t> file);
 

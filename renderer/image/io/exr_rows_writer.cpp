@@ -16,8 +16,8 @@
 #include <fstream>
 #include <thread>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "image/io/exr_metadata.h"
 #include "image/io/exr_state.h"
 #include "image/io/exr_threads.h"

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
+#include "base/archive.h"
 #include "base/byte_planes.h"
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/memory_archive.h"
 #include "base/parallel.h"
 #include "image/io/exr_state.h"
 

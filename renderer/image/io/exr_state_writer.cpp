@@ -4,10 +4,10 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/archive.h"
 #include "base/byte_planes.h"
 #include "base/checksum.h"
 #include "base/error.h"
-#include "base/memory_archive.h"
 #include "base/parallel.h"
 #include "image/io/exr_state.h"
 

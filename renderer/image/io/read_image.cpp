@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "image/image.h"
 #include "image/io/exif.h"
 #include "image/io/exr_input.h"
 #include "image/io/image_format.h"
@@ -21,11 +22,8 @@
 #include "image/io/radiance_hdr.h"
 #include "image/io/sample_reader.h"
 #include "image/io/tiff_block.h"
-#include "image/io/tiff_color.h"
-#include "image/io/tiff_deflate.h"
 #include "image/io/tiff_picture.h"
 #include "image/io/unreadable.h"
-#include "image/orientation.h"
 #include "image/size_limits.h"
 #include "image/tonemap.h"
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/archive.h"
+#include "base/message.h"
 #include "image/image.h"
 #include "image/io/read_image.h"
 #include "image/tonemap.h"
@@ -40,7 +41,7 @@ void checkWritable(const std::filesystem::path& path);
 
 // .exr: all layers and the metadata; float32, scanlines, ZIP. .hdr and .pfm: the colour. .png: the
 // colour after `transform`, 8 bits, sRGB, with unassociated alpha (the layer's colour is associated
-// and is divided by alpha first). Returns warnings of what the file cannot hold (lost_light.h).
+// and is divided by alpha first). Returns warnings of what the file cannot hold (write_image.h).
 // Throws as checkWritable() does, and RunError if writing fails.
 Messages writeImage(const std::filesystem::path& path, const OutputImage& output,
                     const DisplayTransform& transform = {});
@@ -56,5 +57,15 @@ Messages writeInWindow(const std::filesystem::path& path, OutputImage output,
 // Writes the colour alone.
 Messages writeImage(const std::filesystem::path& path, const Image& color,
                     const DisplayTransform& transform = {});
+
+// What an image file cannot hold of an image.
+
+// Warnings of what writing the colour to `path` loses, each "FILE: ...":
+// - in a .png, light where nothing covers the background, such as a caustic on a shadow catcher:
+//   associated colour above alpha. A .png has unassociated colour, at most 1, so it holds no more
+//   than alpha. Only where alpha is below one half: the rest is clipped as any bright surface is.
+// - in a .png and an .hdr, negative channels;
+// - in an .hdr, channels above the largest number of RGBE, and infinite and NaN ones.
+Messages lostLight(const std::filesystem::path& path, const Image& color);
 
 }  // namespace chromeball

@@ -3,7 +3,7 @@
 // faces of a cube.
 #pragma once
 
-#include "lighting/constellation/partition.h"
+#include "lighting/constellation/directional_light.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {

@@ -2,9 +2,11 @@
 // Lights infinitely far away: the elements of constellations and fits, and extracted suns.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "math/rotation.h"
+#include "math/vec.h"
 
 namespace chromeball {
 
@@ -21,5 +23,28 @@ inline Constellation turned(Constellation lights, const Rotation& rotation) {
   for (DirectionalLight& light : lights) light.direction = rotation(light.direction);
   return lights;
 }
+
+// The regions of a map that lights replace.
+
+inline constexpr uint16_t kNoRegion = 65535;
+
+// For each texel of a lat-long map, row by row, the index of its region: 0 to regions - 1, or
+// kNoRegion for a black texel that no light stands for.
+struct Partition {
+  int regions = 0;
+  std::vector<uint16_t> label;
+};
+
+// A straight line in the map, between two positions (u, v).
+struct MapLine {
+  glm::dvec2 from, to;
+};
+
+// What each light of a constellation stands for: regions of the map, or the tiling whose corners
+// are lights.
+struct LightRegions {
+  Partition partition;
+  std::vector<MapLine> tiling;
+};
 
 }  // namespace chromeball

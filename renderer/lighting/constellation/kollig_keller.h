@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "image/image.h"
-#include "lighting/constellation/partition.h"
+#include "lighting/constellation/directional_light.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "lighting/constellation/partition.h"
+#include "lighting/constellation/directional_light.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/median_cut.h"
 
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
 namespace chromeball {
 namespace {
 
@@ -55,6 +59,92 @@ Constellation medianCut(const Image& latLong, int count) {
 Partition medianCutPartition(const Image& latLong, int count) {
   const RegionTable table(latLong);
   return table.partition(latLong, medianCutRegions(table, count));
+}
+
+namespace {
+
+// Indices of the regions, those of high energy first.
+std::vector<int> byEnergy(const RegionTable& table, const std::vector<Region>& regions) {
+  std::vector<double> energy;
+  for (const Region& r : regions) energy.push_back(table.moment(r).w);
+  std::vector<int> order(regions.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return energy[a] > energy[b]; });
+  return order;
+}
+
+}  // namespace
+
+std::vector<Region> levelCutRegions(const RegionTable& table, const LevelCut& cut) {
+  const Region whole{0, 0, table.texels().width(), table.texels().height()};
+  if (table.litCells(whole) == 0) return {};
+  std::vector<Region> regions{whole};
+  bool cuttable = true;
+  for (int level = 0; level < cut.levels && cuttable; ++level) {
+    cuttable = false;
+    for (const int index : byEnergy(table, regions)) {
+      if (int(regions.size()) >= cut.count) return regions;
+      if (table.litCells(regions[index]) < 2) continue;
+      const auto [first, second] = cutInHalf(table, regions[index]);
+      cuttable = true;
+      const bool firstIsLit = table.litCells(first) > 0;
+      regions[index] = firstIsLit ? first : second;
+      if (firstIsLit && table.litCells(second) > 0) regions.push_back(second);
+    }
+  }
+  return regions;
+}
+
+Constellation levelCut(const Image& latLong, const LevelCut& cut) {
+  const RegionTable table(latLong, cut.measure);
+  return table.lights(levelCutRegions(table, cut), cut.place);
+}
+
+Partition levelCutPartition(const Image& latLong, const LevelCut& cut) {
+  const RegionTable table(latLong, cut.measure);
+  return table.partition(latLong, levelCutRegions(table, cut));
+}
+
+namespace {
+
+double variance(const dvec4& moment) {
+  const dvec3 m(moment);
+  return moment.w > 0 ? std::fmax(moment.w - glm::dot(m, m) / moment.w, 0.0) : 0;
+}
+
+std::pair<Region, Region> cut(const RegionTable& table, const Region& r) {
+  const dvec4 whole = table.moment(r);
+  std::pair<Region, Region> best;
+  double minimum = std::numeric_limits<double>::infinity();
+  const auto attempt = [&](const std::pair<Region, Region>& parts) {
+    const dvec4 first = table.moment(parts.first);
+    const double total = variance(first) + variance(whole - first);
+    if (total < minimum) minimum = total, best = parts;
+  };
+  for (int x = r.x0 + 1; x < r.x1; ++x) attempt(cutAtColumn(r, x));
+  for (int y = r.y0 + 1; y < r.y1; ++y) attempt(cutAtRow(r, y));
+  return best;
+}
+
+}  // namespace
+
+std::vector<Region> varianceCutRegions(const RegionTable& table, int count) {
+  return subdivide(
+      table, count, [&](const Region& r) { return variance(table.moment(r)); },
+      [&](const Region& r) { return cut(table, r); });
+}
+
+Constellation varianceCut(const RegionTable& table, int count) {
+  return table.lights(varianceCutRegions(table, count));
+}
+
+Constellation varianceCut(const Image& latLong, int count) {
+  return varianceCut(RegionTable(latLong), count);
+}
+
+Partition varianceCutPartition(const Image& latLong, int count) {
+  const RegionTable table(latLong);
+  return table.partition(latLong, varianceCutRegions(table, count));
 }
 
 }  // namespace chromeball

@@ -3,15 +3,17 @@
 // regions of nearly equal energy.
 #pragma once
 
+#include <limits>
+
 #include "lighting/constellation/region_table.h"
 
 namespace chromeball {
 
 // Repeatedly cuts the region of highest energy (luminance) across its longer side, at the column or
 // row that divides the energy most equally; the width counts times the cosine of the latitude. Any
-// count is possible; powers of two give the published algorithm (level_cut.h has it to the letter).
-// A region's light is at the energy centroid of its directions. No region crosses the seam of the
-// map, so the lights depend on the position of the seam.
+// count is possible; powers of two give the published algorithm (median_cut.h has it to the
+// letter). A region's light is at the energy centroid of its directions. No region crosses the seam
+// of the map, so the lights depend on the position of the seam.
 std::vector<Region> medianCutRegions(const RegionTable& table, int count);
 Constellation medianCut(const RegionTable& table, int count);
 Constellation medianCut(const Image& latLong, int count);
@@ -20,5 +22,35 @@ Partition medianCutPartition(const Image& latLong, int count);
 // The two parts of a region with two or more lit cells. Sides and energies are in the table's
 // measure.
 std::pair<Region, Region> cutInHalf(const RegionTable& table, const Region& r);
+
+// `median-cut-centre`, `median-cut-flat`, and median cut by levels: the variants that the HDRI book
+// (section 9.6.2) and Madsen and Laursen (2007, section 4.1) describe.
+
+// All regions are cut (median_cut.h) before any of their parts: after K levels there are 2^K. Black
+// margins stay in their regions, which matters for centres.
+struct LevelCut {
+  RegionMeasure measure = RegionMeasure::SolidAngle;
+  LightPlace place = LightPlace::Centroid;
+  int levels = std::numeric_limits<int>::max();  // maximum
+  int count = 64;                                // of regions, maximum; those of the last level
+                                                 // with the highest energy are cut
+};
+
+// A part without light is dropped; a region of a single lit cell is not cut.
+std::vector<Region> levelCutRegions(const RegionTable& table, const LevelCut& cut);
+Constellation levelCut(const Image& latLong, const LevelCut& cut);
+Partition levelCutPartition(const Image& latLong, const LevelCut& cut);
+
+// `variance-cut` (Viriyothai and Debevec, "Variance Minimization Light Probe Sampling", SIGGRAPH
+// posters 2009): regions of small variance.
+
+// Repeatedly cuts the region of largest variance, sum of weight |direction - centroid|^2 over its
+// texels, at the column or row that minimises the total variance of the two parts. For unit
+// directions the variance is weight - |moment|^2 / weight, so each candidate takes four look-ups.
+// As with median-cut, no region crosses the seam of the map.
+std::vector<Region> varianceCutRegions(const RegionTable& table, int count);
+Constellation varianceCut(const RegionTable& table, int count);
+Constellation varianceCut(const Image& latLong, int count);
+Partition varianceCutPartition(const Image& latLong, int count);
 
 }  // namespace chromeball

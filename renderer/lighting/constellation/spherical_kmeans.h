@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "lighting/constellation/partition.h"
+#include "lighting/constellation/directional_light.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "lighting/fit/cosine_pattern.h"
 #include "lighting/fit/light_descent.h"
 #include "lighting/fit/light_error.h"
 #include "lighting/fit/radiance_points.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "lighting/fit/cosine_pattern.h"
+#include "lighting/fit/light_error.h"
 #include "lighting/fit/nonnegative.h"
 
 namespace chromeball {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/assembly_preview.h"
 
-#include "image/resample.h"
+#include "image/image.h"
 #include "probe/preview.h"
 
 namespace chromeball {

@@ -6,9 +6,9 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "image/io/read_image.h"
-#include "probe/bright_region.h"
 #include "probe/convert.h"
 #include "probe/solid_angle.h"
+#include "probe/sun_extraction.h"
 
 namespace chromeball {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/resample.h"
+#include "image/image.h"
 
 namespace chromeball {
 namespace {

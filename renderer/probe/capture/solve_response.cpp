@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "math/least_squares.h"
+#include "math/dense_solvers.h"
 
 namespace chromeball {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "probe/rasterize.h"
+#include "probe/convert.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {

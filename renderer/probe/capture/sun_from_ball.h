@@ -4,7 +4,7 @@
 #pragma once
 
 #include "probe/capture/diffuse_ball.h"
-#include "probe/sun.h"
+#include "probe/sun_extraction.h"
 
 namespace chromeball {
 

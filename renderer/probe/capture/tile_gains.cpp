@@ -3,7 +3,7 @@
 #include <map>
 
 #include "base/error.h"
-#include "math/least_squares.h"
+#include "math/dense_solvers.h"
 #include "probe/capture/stitch.h"
 #include "probe/capture/tile_overlaps.h"
 

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/resample.h"
-#include "math/least_squares.h"
+#include "image/image.h"
+#include "math/dense_solvers.h"
 #include "math/quantile.h"
 #include "probe/capture/stitch.h"
 #include "probe/capture/tile_overlaps.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "math/frame.h"
+#include "math/vec.h"
 #include "scene/builder/scene_builder.h"
 
 namespace chromeball {

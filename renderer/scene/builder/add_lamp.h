@@ -2,7 +2,7 @@
 // Lamps of a scene file, added to a scene.
 #pragma once
 
-#include "scene/lamp.h"
+#include "scene/light.h"
 #include "scene/scene.h"
 
 namespace chromeball {

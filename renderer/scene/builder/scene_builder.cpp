@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "scene/builder/check_material.h"
 #include "scene/builder/complete_mesh.h"
-#include "scene/linear_map.h"
 #include "scene/mip_chain.h"
+#include "scene/transform.h"
 
 namespace chromeball {
 namespace {

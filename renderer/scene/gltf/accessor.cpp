@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "base/long_array.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace chromeball {

@@ -11,7 +11,6 @@
 #include "base/printable.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_json.h"
-#include "scene/gltf/member_types.h"
 #include "scene/gltf/uri.h"
 
 namespace chromeball {

@@ -11,7 +11,6 @@
 #include "base/printable.h"
 #include "scene/gltf/animation.h"
 #include "scene/gltf/draco.h"
-#include "scene/gltf/environment.h"
 #include "scene/gltf/gltf_file.h"
 #include "scene/gltf/instances.h"
 #include "scene/gltf/lights.h"
@@ -19,7 +18,7 @@
 #include "scene/gltf/model_cache.h"
 #include "scene/gltf/node_tree.h"
 #include "scene/gltf/variants.h"
-#include "scene/linear_map.h"
+#include "scene/transform.h"
 
 namespace chromeball {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scene/gltf/gltf_file.h"
-#include "scene/gltf/texel_cache.h"
+#include "scene/gltf/model_cache.h"
 #include "scene/scene.h"
 
 namespace chromeball {

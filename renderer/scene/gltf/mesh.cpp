@@ -9,10 +9,10 @@
 
 #include "base/parallel.h"
 #include "scene/builder/complete_mesh.h"
+#include "scene/extended_surface.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/pose.h"
 #include "scene/mesh_attributes.h"
-#include "scene/thin_wall.h"
 
 namespace chromeball {
 namespace {

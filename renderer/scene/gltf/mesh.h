@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scene/gltf/gltf_file.h"
-#include "scene/gltf/mesh_recipe.h"
+#include "scene/gltf/model_cache.h"
 #include "scene/gltf/pose.h"
 #include "scene/scene.h"
 

@@ -2,14 +2,79 @@
 // What several loads of one model share, as for the frames of an animation.
 #pragma once
 
+#include <compare>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
-#include "scene/gltf/mesh_cache.h"
-#include "scene/gltf/texel_cache.h"
+#include "image/io/texel_file.h"
+#include "scene/mesh.h"
+#include "scene/texture.h"
 
 namespace chromeball {
+
+// Decoded images that several loads of one model share, as for the frames of an animation.
+
+using MipChain = std::shared_ptr<const std::vector<TexelGrid>>;
+
+struct TexelCache {
+  double limit = INFINITY;          // bytes; more texels in memory are refused
+  double memory = INFINITY;         // bytes for texels in memory; with more, they go to `file`
+  double used = 0;                  // of it, by grids and chains in memory
+  std::shared_ptr<TexelFile> file;  // null: all are in memory; else it caches the rest of `memory`
+
+  std::map<std::pair<std::string, int>, std::shared_ptr<TexelGrid>> grids;  // by file and image
+  // By image, and by Texture::srgb and Texture::weightedByAlpha.
+  std::map<std::tuple<const TexelGrid*, bool, bool>, MipChain> chains;
+};
+
+// Which meshes of a glTF file are equal.
+
+// Everything that determines an unskinned mesh: primitives with equal recipes have equal meshes.
+struct MeshRecipe {
+  int mode, indices;
+  std::map<std::string, int> attributes;
+  std::vector<std::map<std::string, int>> targets;
+  std::vector<double> weights;
+  std::vector<int> uvSets;             // those that the material reads
+  std::vector<uint32_t> tangentSpace;  // UV set and the bits of its transform; empty: no tangents
+  bool hasAlpha;                       // kept apart: tracing is faster if no mesh mixes the two
+
+  auto operator<=>(const MeshRecipe&) const = default;
+};
+
+// Meshes that several loads of one model share, as for the frames of an animation.
+
+// Everything that determines a mesh of a scene.
+struct MeshKey {
+  std::string file;
+  MeshRecipe recipe;
+  bool isSkinned = false;
+  std::vector<double> placement;  // matrices of the joints, or of the node; empty: neither
+
+  auto operator<=>(const MeshKey&) const = default;
+};
+
+// Does not keep meshes: it knows those that some scene has.
+class MeshCache {
+ public:
+  // Null if no scene has the mesh.
+  std::shared_ptr<const Mesh> find(const MeshKey& key) const {
+    const auto found = meshes_.find(key);
+    return found == meshes_.end() ? nullptr : found->second.lock();
+  }
+  void add(MeshKey key, const std::shared_ptr<const Mesh>& mesh) { meshes_[std::move(key)] = mesh; }
+  void forgetUnused() {
+    std::erase_if(meshes_, [](const auto& entry) { return entry.second.expired(); });
+  }
+
+ private:
+  std::map<MeshKey, std::weak_ptr<const Mesh>> meshes_;
+};
 
 class GltfFile;
 

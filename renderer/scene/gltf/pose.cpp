@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "scene/gltf/accessor.h"
-#include "scene/linear_map.h"
+#include "scene/transform.h"
 
 namespace chromeball {
 namespace {

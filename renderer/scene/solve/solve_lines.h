@@ -2,6 +2,10 @@
 // The camera of a photograph by lines along the axes of the scene.
 #pragma once
 
+#include <optional>
+#include <vector>
+
+#include "math/vec.h"
 #include "scene/solve/solve_points.h"
 
 namespace chromeball {

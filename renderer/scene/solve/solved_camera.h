@@ -6,8 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "base/message.h"
 #include "probe/mapping.h"
+#include "scene/bounds.h"
 #include "scene/camera.h"
+#include "scene/solve/observations.h"
 
 namespace chromeball {
 
@@ -53,5 +56,17 @@ struct CameraFit {
 double focalLengthOfFov(const ImageSize& size, double fov);
 double focalLengthOf35mm(const ImageSize& size, double millimetres);
 double equivalentOn35mm(const ImageSize& size, double focalLength);  // its inverse
+
+// Signs that a camera was found from wrong observations.
+
+// Warnings about observations that no camera fits, that two cameras fit, or that leave the field of
+// view uncertain.
+Messages doubtsAbout(const CameraFit& fit);
+
+// About points outside the picture.
+Messages doubtsAbout(const std::vector<ObservedPoint>& points, const ImageSize& size);
+
+// About a camera that does not see the model.
+Messages doubtsAbout(const SolvedCamera& camera, const Bounds& model);
 
 }  // namespace chromeball

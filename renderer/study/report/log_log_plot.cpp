@@ -8,8 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "study/report/markup.h"
-
 namespace chromeball {
 namespace {
 
@@ -171,6 +169,26 @@ std::string logLogPlot(const std::string& title, const std::string& xLabel,
   svg += fmt::format("<g transform=\"translate({} {})\">\n", plots, kTop);
   if (!panels.empty()) svg += legendOf(panels.front().series);
   return svg + "</g>\n</svg>\n";
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '"')
+      result += "&quot;";
+    else if (static_cast<unsigned char>(c) >= ' ')
+      result += c;
+  }
+  return result;
+}
+
+std::string svgText(double x, double y, const char* anchor, const std::string& text) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
+                     escaped(text));
 }
 
 }  // namespace chromeball

@@ -30,4 +30,12 @@ std::string logLogPlot(const std::string& title, const std::string& xLabel,
                        const std::string& yLabel, const std::vector<PlotPanel>& panels,
                        Ticks xTicks = Ticks::Binary);
 
+// Text in HTML and SVG.
+
+// Escapes & < and ", and drops control characters.
+std::string escaped(const std::string& text);
+
+// An SVG text element, in pixels; `anchor` is start, middle or end.
+std::string svgText(double x, double y, const char* anchor, const std::string& text);
+
 }  // namespace chromeball

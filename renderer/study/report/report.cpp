@@ -12,7 +12,6 @@
 #include "probe/mapping.h"
 #include "probe/preview.h"
 #include "study/report/log_log_plot.h"
-#include "study/report/markup.h"
 #include "study/report/report_images.h"
 #include "study/report/report_tables.h"
 #include "study/result_tables.h"

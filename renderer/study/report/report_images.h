@@ -4,6 +4,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <vector>
+
+#include "lighting/strategy.h"
 #include "study/render_store.h"
 #include "study/results.h"
 
@@ -30,5 +33,11 @@ nlohmann::ordered_json reportImages(const RenderStore& store, const StudyResults
 std::vector<const Cell*> equalTimeCells(const StudyResults& results);
 
 std::string pngUri(int width, int height, int channels, std::span<const uint8_t> bytes);
+
+// The directions that a strategy samples, for display.
+
+// World-space directions of the light samples at a point on a floor: all lights of a constellation,
+// 128 random samples of other strategies. Empty for a strategy without light samples.
+std::vector<vec3> sampledDirections(const LightSource& strategy);
 
 }  // namespace chromeball

@@ -5,8 +5,7 @@
 
 #include <algorithm>
 
-#include "study/estimate_text.h"
-#include "study/report/markup.h"
+#include "study/report/log_log_plot.h"
 #include "study/result_tables.h"
 
 namespace chromeball {

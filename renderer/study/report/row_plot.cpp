@@ -8,7 +8,7 @@
 
 #include "probe/mapping.h"
 #include "probe/preview.h"
-#include "study/report/markup.h"
+#include "study/report/log_log_plot.h"
 #include "study/report/report_images.h"
 
 namespace chromeball {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "lighting/row_distribution.h"
+#include "study/report/row_distribution.h"
 
 namespace chromeball {
 

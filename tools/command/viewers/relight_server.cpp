@@ -5,8 +5,8 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "front/arguments.h"
+#include "image/image.h"
 #include "image/io/write_image.h"
-#include "image/resample.h"
 #include "viewers/local_server.h"
 
 namespace chromeball {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "image/resample.h"
-#include "relight/light_weights.h"
-#include "relight/relight.h"
+#include "image/image.h"
+#include "relight/stage/light_stage.h"
+#include "relight/stage/relight.h"
 
 namespace chromeball {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "image/tonemap.h"
-#include "relight/light_stage.h"
+#include "relight/stage/light_stage.h"
 
 namespace chromeball {
 

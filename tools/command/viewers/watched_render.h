@@ -11,7 +11,7 @@
 #include <string>
 
 #include "base/json.h"
-#include "base/stopwatch.h"
+#include "base/progress.h"
 #include "session/viewer.h"
 
 namespace chromeball {

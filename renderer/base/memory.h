@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much memory the process may use.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace chromeball {
+
+// 0.8 times the machine's memory, or the process's limit if that is less. Bytes.
+double memoryBudget();
+
+// Memory of long arrays, in large pages.
+
+// Asks the system for pages of 2 MB in [data, data + bytes), memory that nothing was written to:
+// giving out, and clearing, many pages of 4 KB takes longer than copying a file into them. Without
+// effect where the system has no such pages.
+void useLargePages(void* data, size_t bytes);
+
+// `count` zeros.
+template <class T>
+std::vector<T> longArray(size_t count) {
+  std::vector<T> array;
+  array.reserve(count);
+  useLargePages(array.data(), count * sizeof(T));
+  array.resize(count);
+  return array;
+}
+
+}  // namespace chromeball

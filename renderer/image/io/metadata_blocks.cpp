@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// JPEG (ITU-T T.81, annex B): markers, most of them followed by a segment of a stated length, up to
+// the first start of scan.
+#include "image/io/metadata_blocks.h"
+
+#include <algorithm>
+
+namespace chromeball {
+
+// JPEG (ITU-T T.81, annex B): markers, most of them followed by a segment of a stated length, up to
+// the first start of scan.
+
+namespace {
+
+enum JpegMarker : uint8_t {
+  kTem = 0x01,
+  kRst0 = 0xd0,
+  kSoi = 0xd8,
+  kEoi = 0xd9,
+  kSos = 0xda,
+  kApp0 = 0xe0,  // JFIF
+  kApp1 = 0xe1,  // EXIF, XMP
+  kApp2 = 0xe2   // an ICC profile
+};
+
+bool standsAlone(uint8_t marker) { return marker == kTem || (marker >= kRst0 && marker <= kSoi); }
+
+// The second byte of the next marker; 0 at the end of the file. Skips anything between segments, as
+// libjpeg does, and moves `at` to the byte after the marker.
+uint8_t nextMarker(std::span<const uint8_t> file, size_t& at) {
+  for (; at + 1 < file.size(); ++at)
+    if (file[at] == 0xff && file[at + 1] != 0xff && file[at + 1] != 0) {
+      at += 2;
+      return file[at - 1];
+    }
+  return 0;
+}
+
+// The end of the segment whose marker ends at `at`.
+size_t endOfSegment(std::span<const uint8_t> file, size_t at, uint8_t marker) {
+  if (standsAlone(marker)) return at;
+  if (file.size() - at < 2) return file.size();
+  return std::min(at + size_t(std::max(file[at] << 8 | file[at + 1], 2)), file.size());
+}
+
+// The data of the first segment with this marker that begins with `name`, after it.
+std::span<const uint8_t> segmentOf(std::span<const uint8_t> file, uint8_t wanted,
+                                   std::string_view name) {
+  constexpr size_t kLengthBytes = 2;
+  const size_t dataAt = kLengthBytes + name.size();
+  size_t at = 0;
+  while (const uint8_t marker = nextMarker(file, at)) {
+    if (marker == kSos || marker == kEoi) break;
+    const size_t begin = at;
+    at = endOfSegment(file, at, marker);
+    const std::span<const uint8_t> segment = file.subspan(begin, at - begin);
+    if (marker == wanted && segment.size() > dataAt &&
+        std::equal(name.begin(), name.end(), segment.begin() + kLengthBytes))
+      return segment.subspan(dataAt);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::span<const uint8_t> jpegExif(std::span<const uint8_t> file) {
+  return segmentOf(file, kApp1, kExifName);
+}
+
+std::span<const uint8_t> jpegJfif(std::span<const uint8_t> file) {
+  return segmentOf(file, kApp0, std::string_view("JFIF\0", 5));
+}
+
+std::span<const uint8_t> jpegProfile(std::span<const uint8_t> file) {
+  constexpr std::string_view kName("ICC_PROFILE\0", 12);
+  return segmentOf(file, kApp2, kName);
+}
+
+// PNG (ISO/IEC 15948): a signature, then chunks of length, type, data and checksum.
+
+std::span<const uint8_t> pngChunk(std::span<const uint8_t> file, std::string_view type) {
+  constexpr size_t kSignatureBytes = 8, kHeadBytes = 8;  // length and type
+  constexpr size_t kChecksumBytes = 4;
+  for (size_t at = kSignatureBytes; at + kHeadBytes <= file.size();) {
+    const uint8_t* head = &file[at];
+    const uint64_t length = uint64_t(head[0]) << 24 | head[1] << 16 | head[2] << 8 | head[3];
+    const size_t begin = at + kHeadBytes;
+    if (length > file.size() - begin) return {};
+    if (std::string_view(reinterpret_cast<const char*>(head + 4), 4) == type)
+      return file.subspan(begin, size_t(length));
+    at = begin + size_t(length) + kChecksumBytes;
+  }
+  return {};
+}
+
+// Some writers begin the block with the name that it has in a JPEG.
+std::span<const uint8_t> pngExif(std::span<const uint8_t> file) {
+  const std::span<const uint8_t> chunk = pngChunk(file, "eXIf");
+  const bool isNamed = chunk.size() >= kExifName.size() &&
+                       std::equal(kExifName.begin(), kExifName.end(), chunk.begin());
+  return isNamed ? chunk.subspan(kExifName.size()) : chunk;
+}
+
+}  // namespace chromeball

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "probe/capture/align.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "math/icosphere.h"
+#include "math/vec.h"
+#include "probe/capture/rotation_fit.h"
+#include "probe/mapping.h"
+
+namespace chromeball {
+namespace {
+
+using glm::dquat;
+using glm::dvec3;
+
+constexpr int kCoarsest = 16, kFinest = 512;  // heights of maps
+
+struct Candidate {
+  dquat rotation;
+  double correlation = 0;
+};
+
+double angleBetween(const dquat& a, const dquat& b) {
+  return glm::degrees(2 * std::acos(std::min(std::fabs(glm::dot(a, b)), 1.0)));
+}
+
+// Rotations at most 11 degrees apart: all of SO(3).
+std::vector<Candidate> grid() {
+  constexpr int kSubdivisions = 2, kTurns = 32;
+  std::vector<Candidate> rotations;
+  for (const vec3& normal : icosphereNormals(kSubdivisions)) {
+    const Frame frame(normal);
+    const dquat toNormal =
+        glm::normalize(glm::quat_cast(glm::dmat3(dvec3(frame.x), dvec3(frame.y), dvec3(frame.z))));
+    for (int i = 0; i < kTurns; ++i)
+      rotations.push_back({toNormal * glm::angleAxis(2 * kPiD * i / kTurns, dvec3(0, 0, 1))});
+  }
+  return rotations;
+}
+
+// The best that are further apart than `degrees`, at most `count`, best first.
+std::vector<Candidate> distinct(std::vector<Candidate> all, double degrees, size_t count) {
+  std::ranges::stable_sort(all, std::greater(), &Candidate::correlation);
+  std::vector<Candidate> kept;
+  for (const Candidate& candidate : all) {
+    if (kept.size() == count) break;
+    if (std::ranges::all_of(kept, [&](const Candidate& k) {
+          return angleBetween(candidate.rotation, k.rotation) > degrees;
+        }))
+      kept.push_back(candidate);
+  }
+  return kept;
+}
+
+// The power that is not explained, as a fraction.
+double residual(double correlation) { return 1 - correlation * std::max(correlation, 0.0); }
+
+// That of a map and the same map interpolated twice, turned and turned back.
+double interpolationResidual(const Image& map) {
+  const Rotation turn = Rotation::ofAngles({50, 40, 30});
+  const Probe probe(map, turn);
+  Image turned(map.width, map.height, 3);
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x)
+      turned.setRgb(x, y, probe.radiance(vec3(texelDirection({map.width, map.height}, x, y))));
+  return residual(MapPair(map, turned).correlation(glm::conjugate(turn.quaternion())));
+}
+
+// Whether a rotation fits as well as the best one: the likelihood ratio test, with as many
+// independent residuals as the sphere has parts in MapPair::standardErrors(). Residuals below
+// `least` say nothing: without interpolation, equal maps have none.
+bool fitsAsWell(const Candidate& candidate, const Candidate& best, double least) {
+  constexpr double kResiduals = 80;
+  constexpr double kChiSquare = 16.27;  // of three degrees of freedom: exceeded in 0.1% of cases
+  const double ratio = std::max(residual(candidate.correlation), least) /
+                       std::max(residual(best.correlation), least);
+  return kResiduals * std::log(ratio) <= kChiSquare;
+}
+
+// Refined with these maps; without those that fit worse, best first.
+std::vector<Candidate> refined(const MapPair& maps, std::vector<Candidate> candidates, int height,
+                               double leastResidual) {
+  parallelFor(size_t(0), candidates.size(), [&](size_t i) {
+    candidates[i].rotation = maps.refined(candidates[i].rotation);
+    candidates[i].correlation = maps.correlation(candidates[i].rotation);
+  });
+  const size_t most = candidates.size();
+  candidates = distinct(std::move(candidates), 180.0 / height, most);
+  std::erase_if(candidates, [&, best = candidates.front()](const Candidate& candidate) {
+    return !fitsAsWell(candidate, best, leastResidual);
+  });
+  return candidates;
+}
+
+std::vector<Candidate> search(const MapPair& maps) {
+  constexpr size_t kCount = 64;
+  constexpr double kApart = 15;  // degrees
+  std::vector<Candidate> candidates = grid();
+  parallelFor(size_t(0), candidates.size(), [&](size_t i) {
+    candidates[i].correlation = maps.correlation(candidates[i].rotation);
+  });
+  return distinct(std::move(candidates), kApart, kCount);
+}
+
+// The axis about which all of several are turned from the first, if there is one.
+std::optional<dvec3> commonAxis(const std::vector<Candidate>& candidates) {
+  constexpr double kParallel = 0.985;  // cosine of 10 degrees
+  if (candidates.size() < 3) return {};
+  std::optional<dvec3> first;
+  dvec3 sum(0);
+  for (size_t i = 1; i < candidates.size(); ++i) {
+    const dquat turn = candidates[i].rotation * glm::conjugate(candidates[0].rotation);
+    dvec3 axis = glm::normalize(dvec3(turn.x, turn.y, turn.z));
+    if (!first) first = axis;
+    if (glm::dot(axis, *first) < 0) axis = -axis;
+    if (glm::dot(axis, *first) < kParallel) return {};
+    sum += axis;
+  }
+  return glm::normalize(sum);
+}
+
+void checkVaries(const Image& logMap, std::string_view name) {
+  constexpr float kLeast = 1e-4f;  // of the logarithm: of the radiance as a fraction
+  const auto [least, greatest] = std::ranges::minmax(logMap.texels);
+  if (!(greatest - least > kLeast))
+    throwInput("{}: has the same radiance in all directions, so no rotation can be found", name);
+}
+
+// Doubled from the coarsest height to that of the coarser map.
+std::vector<int> heights(const Image& a, const Image& b) {
+  const int finest = std::clamp(std::min(a.height, b.height), kCoarsest, kFinest);
+  std::vector<int> all;
+  for (int height = kCoarsest; height < finest; height *= 2) all.push_back(height);
+  all.push_back(finest);
+  return all;
+}
+
+ProbeFit fitOf(const Candidate& candidate) {
+  return {Rotation::ofQuaternion(candidate.rotation), candidate.correlation};
+}
+
+}  // namespace
+
+ProbeAlignment alignProbes(const Image& first, const Image& second, std::string_view firstName,
+                           std::string_view secondName) {
+  const LogMaps firstMaps(first), secondMaps(second);
+  std::vector<Candidate> candidates;
+  dvec3 errors(0);
+  for (const int height : heights(first, second)) {
+    const Image a = firstMaps.map(height), b = secondMaps.map(height);
+    if (candidates.empty()) checkVaries(a, firstName), checkVaries(b, secondName);
+    const MapPair maps(a, b);
+    if (candidates.empty()) candidates = search(maps);
+    const double least = std::max(interpolationResidual(a), interpolationResidual(b));
+    candidates = refined(maps, std::move(candidates), height, least);
+    errors = maps.standardErrors(candidates.front().rotation);
+  }
+  ProbeAlignment alignment{fitOf(candidates.front()), glm::degrees(errors), {}, {}};
+  for (size_t i = 1; i < candidates.size(); ++i) alignment.others.push_back(fitOf(candidates[i]));
+  alignment.axis = commonAxis(candidates);
+  return alignment;
+}
+
+}  // namespace chromeball

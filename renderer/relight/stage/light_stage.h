@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A light stage: pictures of one scene under each of many lighting conditions (HDRI book, section
+// 9.9; Debevec et al. 2000).
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "image/image.h"
+#include "probe/probe.h"
+#include "relight/stage/direction_basis.h"
+
+namespace chromeball {
+
+// The whole, or a band of its rows.
+struct LightStage {
+  DirectionBasis basis;
+  // Pixel by pixel, three channels for each element of the basis: radiance where the element's
+  // function is the radiance that arrives from each direction. The elements of cells add to the
+  // picture under unit radiance from everywhere.
+  Image elements;
+  Image own;  // radiance that the scene has from its own lights; empty: it has none
+
+  int width() const { return elements.width; }
+  int height() const { return elements.height; }
+};
+
+// What a file may hold: 256 GiB of float32.
+inline constexpr uint64_t kMaxStageNumbers = uint64_t(1) << 36;
+
+// A file's numbers for each pixel, at most.
+int stageChannels(const DirectionBasis& basis);
+
+// Throws InputError, begun by `location`, if a stage of this size exceeds kMaxStageNumbers.
+void checkStageSize(const DirectionBasis& basis, int width, int height, std::string_view location);
+
+// The bytes of a pixel's elements in memory.
+double elementBytes(const DirectionBasis& basis);
+
+// Throws InputError, begun by `location`, if the elements take more than `memory` bytes.
+void checkInMemory(const DirectionBasis& basis, int width, int height, double memory,
+                   std::string_view location);
+
+// A probe as weights of a light stage's elements.
+
+// Of cells: the mean radiance of the rotated probe over each. Of spherical harmonics: the integral
+// of radiance times the function. By quadrature over the bilinear interpolation of the map, each
+// point with its exact solid angle, on a grid of at least the map's texels: 4096 x 2048 points or
+// more for cells, so that a cell's edge is off by 0.04 degrees at most. Parallel; the same bits for
+// any number of threads.
+std::vector<Rgb> lightWeights(const DirectionBasis& basis, const Image& latLong,
+                              const Rotation& rotation, int leastWidth = 4096);
+
+// What a pixel reflects of light from each direction, as a picture over the directions (HDRI book,
+// section 9.9.2, Figure 9.45).
+
+// A lat-long map of radiance per irradiance on a surface that faces the light, 1/sr: f cos x
+// visibility, and interreflection. Of boxes one texel for each; of other bases 64 x 32 texels, of
+// which each shows the cell of its centre, or the sum of the harmonics.
+Image reflectanceFunction(const LightStage& stage, int x, int y);
+
+}  // namespace chromeball

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// A light stage under a probe, of all its numbers or of the largest alone (HDRI book, section
+// 9.9.2).
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "relight/stage/relight.h"
+#include "relight/stage/stage_file.h"
+
+namespace chromeball {
+
+// Of the numbers in the domain, those of largest magnitude that are kept.
+struct KeptShares {
+  double stage = 1, light = 1;  // above 0, up to 1
+
+  bool isAll() const { return stage == 1 && light == 1; }
+};
+
+struct RelitStage {
+  Image picture;  // with the scene's own light
+  // Where not all is kept: shares of numbers that are zeros, and relativeDifference() of the sums.
+  double zeros = 0, lightZeros = 0, error = 0;
+};
+
+// The sum over the elements of element times weight, in a domain. A stage of several bands is read
+// twice if some of it is left out. The bits do not depend on the bands.
+RelitStage relitStage(StageBands& stage, const std::vector<Rgb>& weights, RelightDomain domain,
+                      const KeptShares& kept);
+
+// What that takes besides the bands, at most, with the picture's file. Bytes.
+double relitStageBytes(int width, int height);
+
+// Keeps the numbers of largest magnitude, of more numbers than memory may hold.
+
+// A histogram of magnitudes. Bins are 2^-11 wide, relatively: the magnitudes of floats have the
+// order of their bits.
+class Magnitudes {
+ public:
+  static constexpr int kShift = 12;  // from a magnitude's bits to its bin
+  static constexpr size_t kBins = size_t(1) << (31 - kShift), kBytes = kBins * sizeof(uint64_t);
+
+  static size_t binOf(float value) {
+    return (std::bit_cast<uint32_t>(value) & 0x7fffffffu) >> kShift;
+  }
+
+  void add(std::span<const float> values) {
+    for (const float value : values) ++counts_[binOf(value)];
+  }
+  void add(const Magnitudes& other);
+
+  // The bin from which on the numbers are together at most `share` of all, and not none.
+  size_t leastBin(double share) const;
+
+ private:
+  std::vector<uint64_t> counts_ = std::vector<uint64_t>(kBins);
+};
+
+// Sets those below this bin to 0. Returns the number of zeros.
+uint64_t dropBelow(size_t leastBin, std::span<float> values);
+
+// Sets all but the largest magnitudes to 0: about `share` of the values stay. Returns the share of
+// zeros.
+double keepLargest(std::span<float> values, double share);
+
+}  // namespace chromeball

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls an estimate at every point of a scene, on all threads.
+#pragma once
+
+#include <atomic>
+#include <bit>
+#include <mutex>
+
+#include "bake/bake.h"
+#include "base/parallel.h"
+#include "relight/transfer/escaping_path.h"
+#include "relight/transfer/vertex_transfer.h"
+
+namespace chromeball {
+
+// The scratch of a thread.
+struct TransferWorker {
+  PathContext context;
+  InvalidSamples invalid;
+  std::vector<dvec3> sums;
+};
+
+// The random numbers of all points, and the loop over their samples. `tracer`: of a NoProbe.
+class TransferPoints {
+ public:
+  TransferPoints(const PathTracer& tracer, const std::vector<PlacedMesh>& meshes,
+                 const std::vector<BakePoint>& points, const TransferSettings& settings)
+      : light_(tracer, BakedLight::Irradiance, INFINITY),
+        meshes_(meshes),
+        points_(points),
+        settings_(settings),
+        table_(std::bit_ceil(std::clamp(settings.samples, 16u, kMaxTable)),
+               dimension::tabulated(settings.maxDepth + 1), settings.seed) {}
+
+  // estimate(point, surface, worker) for each point that is not buried, where it may call
+  // forSamples(); `result` gets the rest.
+  template <class Estimate>
+  void forPoints(VertexTransfer& result, const Progress& progress, const Estimate& estimate) const {
+    result.isBuried.assign(points_.size(), 0);
+    PerThread<TransferWorker> workers([&] {
+      return TransferWorker{
+          {.sampler = PixelSampler(table_, settings_.seed), .clamp = Clamp()}, {}, {}};
+    });
+    std::atomic<size_t> finished = 0;
+    std::mutex reporting;
+    constexpr size_t kGrain = 16;
+    parallelRanges(points_.size(), kGrain, [&](size_t begin, size_t end) {
+      TransferWorker& worker = workers.local();
+      for (size_t i = begin; i < end; ++i) {
+        const BakePoint& point = points_[i];
+        const Surface surface = light_.surfaceAt(point);
+        worker.context.sampler.startPixel(point.x, point.y, kProbingBlock);
+        result.isBuried[i] = light_.isBuried(point, surface, meshes_, worker.context);
+        if (!result.isBuried[i]) estimate(i, surface, worker);
+      }
+      const size_t count = finished += end - begin;
+      if (std::unique_lock lock(reporting, std::try_to_lock); lock)
+        progress(double(count) / double(points_.size()));
+    });
+    workers.forEach([&](const TransferWorker& worker) { result.invalid.add(worker.invalid); });
+  }
+
+  // For each sample, with its random numbers set: add(trace()), but for invalid paths. Returns how
+  // many are valid.
+  template <class Trace, class Add>
+  uint32_t forSamples(size_t index, TransferWorker& worker, const Trace& trace,
+                      const Add& add) const {
+    const BakePoint& point = points_[index];
+    PixelSampler& sampler = worker.context.sampler;
+    uint32_t valid = 0;
+    for (uint32_t i = 0; i < settings_.samples; ++i) {
+      if (i % table_.size() == 0) sampler.startPixel(point.x, point.y, i / table_.size());
+      sampler.startSample(i % table_.size());
+      sampler.startVertex(0);
+      ++worker.context.counts.camera;
+      const EscapingPath path = trace();
+      if (const auto defect = defectOf(path.throughput + path.found, false)) {
+        worker.invalid.add(*defect, int(point.x), int(point.y));
+        continue;
+      }
+      add(path);
+      ++valid;
+    }
+    return valid;
+  }
+
+ private:
+  static constexpr uint32_t kMaxTable = 4096;  // points; more samples take another randomisation
+  static constexpr uint64_t kProbingBlock = ~0ull;  // of the sampler, for isBuried()
+
+  PointLight light_;
+  const std::vector<PlacedMesh>& meshes_;
+  const std::vector<BakePoint>& points_;
+  const TransferSettings& settings_;
+  SobolTable table_;
+};
+
+}  // namespace chromeball
