@@ -194,7 +194,7 @@ TEST(Accel, EntriesOfOneMeshHaveTheirOwnFilters) {
 }
 
 // From outside, a ray cannot hit a back face of a closed body, even if every ray is aimed at an
-// edge. The exception is triangles seen exactly edge-on: one ray in a million. Without trace/edge.h
+// edge. The exception is triangles seen exactly edge-on: one ray in a million. Without trace/ray.h
 // it is one in 300.
 TEST(Accel, RaysAtEdgesDoNotEnterClosedBodies) {
   constexpr int kRays = 200000;

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "lighting/constellation/median_cut.h"
-#include "lighting/light_areas.h"
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"
 #include "probe/sun_extraction.h"
@@ -13,7 +12,7 @@
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_scene.h"
-#include "transport/mis.h"
+#include "transport/path_settings.h"
 
 namespace chromeball::area_lights_test {
 namespace {

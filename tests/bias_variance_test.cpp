@@ -7,8 +7,8 @@
 
 #include <random>
 
-#include "measure/agreement.h"
 #include "measure/power_law.h"
+#include "measure/statistics.h"
 
 namespace chromeball::bias_variance_test {
 namespace {

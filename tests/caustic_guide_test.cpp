@@ -7,9 +7,9 @@
 
 #include "base/parallel.h"
 #include "composite/render_composite.h"
-#include "lighting/combined_light.h"
 #include "lighting/polygon_lights.h"
-#include "lighting/split_probe.h"
+#include "lighting/scene_sources.h"
+#include "lighting/suns.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
 #include "render/guide_training.h"

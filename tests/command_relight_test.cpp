@@ -8,7 +8,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"
-#include "relight/stage/relight.h"
+#include "relight/stage/relit_stage.h"
 #include "run_command.h"
 #include "small_model.h"
 #include "whole_stage.h"

@@ -4,7 +4,6 @@
 
 #include "constellation_maps.h"
 #include "lighting/constellation/kollig_keller.h"
-#include "lighting/constellation/lightgen.h"
 #include "lighting/constellation/median_cut.h"
 #include "lighting/constellation/spherical_kmeans.h"
 #include "probe/irradiance.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ground that nobody has modelled, and the probe's scale by the plate's ground.
-#include "composite/ground.h"
+#include "composite/local_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 // The shapes of area lights: regions of a map, and discs.
 #include <gtest/gtest.h>
 
+#include "lighting/area_lights.h"
 #include "lighting/constellation/kollig_keller.h"
 #include "lighting/constellation/median_cut.h"
-#include "lighting/light_areas.h"
 #include "probe/solid_angle.h"
 #include "sphere_test.h"
 

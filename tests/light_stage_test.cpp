@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "math/vec.h"
-#include "measure/agreement.h"
 #include "measure/statistics.h"
 #include "probe/spherical_harmonics.h"
 #include "probe/synth.h"

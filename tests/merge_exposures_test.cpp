@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "bracket.h"
 #include "image/tonemap.h"
-#include "probe/capture/exposure_agreement.h"
+#include "probe/capture/exposure.h"
 #include "probe/capture/filter_transmission.h"
 #include "probe/capture/find_shift.h"
 #include "probe/load.h"

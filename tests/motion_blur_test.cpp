@@ -9,7 +9,6 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "math/sampler.h"
-#include "measure/agreement.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
 #include "run_command.h"

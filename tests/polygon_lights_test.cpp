@@ -11,8 +11,8 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "lighting/combined_light.h"
 #include "lighting/importance.h"
+#include "lighting/scene_sources.h"
 #include "math/icosphere.h"
 #include "math/rotation.h"
 #include "measure/statistics.h"
@@ -24,7 +24,7 @@
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_scene.h"
-#include "transport/mis.h"
+#include "transport/path_settings.h"
 
 namespace chromeball::polygon_lights_test {
 namespace {

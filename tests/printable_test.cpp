@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What messages echo: names and values of hostile files.
-#include "base/printable.h"
+#include "base/text.h"
 
 #include <gtest/gtest.h>
 

@@ -18,7 +18,7 @@
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_scene.h"
-#include "transport/mis.h"
+#include "transport/path_settings.h"
 
 namespace chromeball::scene_suns_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // --show-lights: what the camera and mirrors see of the lights that replace a probe.
-#include "lighting/shown_lights.h"
+#include "lighting/delta_lights.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "floor_in_surroundings.h"
 #include "image/io/write_image.h"
+#include "lighting/area_lights.h"
 #include "lighting/constellation/median_cut.h"
-#include "lighting/light_areas.h"
 #include "lighting/methods.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "math/rotation.h"
 #include "measure/statistics.h"
 #include "photographs_of_points.h"
 #include "scene/solve/solved_camera.h"
-#include "scene/solve/spread_rotations.h"
 
 namespace chromeball::solve_points_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "math/spherical_polygon.h"
+#include "math/polygon.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "probe/capture/clipped_sun.h"
 #include "probe/edit.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"

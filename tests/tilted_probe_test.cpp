@@ -6,7 +6,7 @@
 
 #include "lighting/importance.h"
 #include "lighting/polygon_lights.h"
-#include "lighting/split_probe.h"
+#include "lighting/suns.h"
 #include "math/icosphere.h"
 #include "measure/statistics.h"
 #include "probe/convert.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "animation/match_scenes.h"
+#include "animation/scene_motion.h"
 #include "base/error.h"
 #include "scene/camera.h"
 

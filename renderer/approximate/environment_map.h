@@ -40,7 +40,7 @@ class EnvironmentLight {
 
 // At the first surface: emission; the light of lamps, emitting surfaces and suns, by light samples
 // with shadows, except that smooth lobes look suns up like the probe, as all lobes do ambient
-// light; and of the probe, lobe by lobe (shading/map_lobes.h),
+// light; and of the probe, lobe by lobe (shading/bsdf_sample.h),
 //   diffuse   albedo / pi E(n)
 //   specular  albedo L'(R, roughness), R the mirror direction, or L in a direction that GGX
 //             microfacets reflect if the lobe is narrow (PrefilteredProbe::kLeastRoughness); of

@@ -20,7 +20,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/printable.h"
+#include "base/text.h"
 
 namespace chromeball {
 

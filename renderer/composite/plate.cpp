@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "image/image.h"
 #include "image/io/read_image.h"
-#include "math/quantile.h"
+#include "math/cdf.h"
 #include "trace/accel.h"
 
 namespace chromeball {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "denoise/fireflies.h"
+#include "denoise/filter.h"
 #include "denoise/selection.h"
 
 namespace chromeball {

@@ -16,7 +16,7 @@
 #include "description/scene_hash.h"
 #include "film/aov.h"
 #include "lighting/strategy.h"
-#include "render/integrator_kind.h"
+#include "render/render_settings.h"
 
 namespace chromeball {
 namespace {

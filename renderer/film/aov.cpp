@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/suggest.h"
+#include "base/text.h"
 
 namespace chromeball {
 namespace {

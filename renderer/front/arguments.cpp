@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "image/size_limits.h"
 
 namespace chromeball {

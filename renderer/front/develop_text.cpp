@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "front/arguments.h"
 
 namespace chromeball {

@@ -9,8 +9,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/printable.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "front/arguments.h"
 
 namespace chromeball {

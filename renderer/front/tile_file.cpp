@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "base/printable.h"
+#include "base/text.h"
 #include "front/toml_section.h"
 #include "image/io/output_file.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/printable.h"
+#include "base/text.h"
 #include "front/setting_table.h"
 #include "front/toml_keys.h"
 

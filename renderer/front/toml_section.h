@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/named_setting.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "front/settings.h"
 #include "math/vec.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 
 namespace chromeball {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "lighting/constellation/cube_grid.h"
 #include "lighting/constellation/kollig_keller.h"
-#include "lighting/constellation/lightgen.h"
 #include "lighting/constellation/median_cut.h"
 #include "lighting/constellation/penrose.h"
 

@@ -6,15 +6,13 @@
 #include <limits>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "lighting/area_lights.h"
 #include "lighting/constellation_lights.h"
 #include "lighting/delta_lights.h"
 #include "lighting/fit/irradiance_fit.h"
 #include "lighting/importance.h"
-#include "lighting/light_areas.h"
 #include "lighting/product.h"
-#include "lighting/shown_lights.h"
 #include "lighting/strata.h"
 #include "lighting/suns.h"
 #include "lighting/uniform.h"

@@ -3,8 +3,8 @@
 // surface most of the remaining variance comes from visibility.
 #pragma once
 
-#include "lighting/blocked_field.h"
 #include "lighting/light_source.h"
+#include "lighting/luminance_field.h"
 #include "math/cdf.h"
 #include "probe/probe.h"
 

@@ -7,7 +7,7 @@
 #include <charconv>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "lighting/methods.h"
 
 namespace chromeball {

@@ -2,6 +2,8 @@
 // Sampling an index in proportion to tabulated weights.
 #pragma once
 
+#include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -54,5 +56,22 @@ class CdfRows {
   std::vector<double> cdf_;     // rows x (columns + 1), each from 0 to 1
   std::vector<int32_t> guide_;  // rows x (kGuide + 1): the column that contains k / kGuide
 };
+
+// Quantiles of numbers.
+
+// The number that `fraction` of the others, 0 to 1, are below: one of `values`, which are not
+// empty.
+template <class T>
+T quantile(std::vector<T> values, double fraction) {
+  assert(!values.empty());
+  const auto at = values.begin() + std::ptrdiff_t(fraction * double(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+template <class T>
+T median(std::vector<T> values) {
+  return quantile(std::move(values), 0.5);
+}
 
 }  // namespace chromeball

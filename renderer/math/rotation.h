@@ -61,4 +61,16 @@ class Rotation {
 // more than a turn is possible, else the shortest way at constant speed.
 Rotation between(const Rotation& from, const Rotation& to, double t);
 
+// Rotations: spread evenly, and by a vector.
+
+// So many rotations with no large gap between them: a super-Fibonacci spiral of unit quaternions
+// (Alexa 2022).
+std::vector<glm::dmat3> spreadRotations(int count);
+
+// The rotation about `axis` by its length in radians.
+glm::dmat3 rotationBy(const glm::dvec3& axis);
+
+// The angle between two rotations, in radians.
+double angleBetween(const glm::dmat3& a, const glm::dmat3& b);
+
 }  // namespace chromeball

@@ -4,6 +4,8 @@
 
 #include <span>
 
+#include "image/image.h"
+
 namespace chromeball {
 
 // Pearson's chi-square test of observed against expected counts. Cells with an expected count below
@@ -49,5 +51,21 @@ Estimate meanOf(std::span<const double> numbers);
 // The mean of estimates of one number, weighted by their inverse variances. Ignores estimates whose
 // standard error is 0; {0, 0} if none is left.
 Estimate weightedMean(std::span<const Estimate> estimates);
+
+// Tests whether two unbiased ways of rendering give the same image.
+
+// The result of Welch's t-tests on the mean luminance of every tile. If the images differ by noise
+// only, `fraction` is 0 in 19 of 20 comparisons and pValue is uniform in [0, 1].
+struct Agreement {
+  static constexpr int kTile = 8;  // pixels per side; means over a tile are nearly normal
+
+  Image z;  // one channel, one texel per tile: the normal deviate with the p-value of the test
+  size_t tiles = 0;
+  double fraction = 0;  // of tiles that differ, at a significance of 5% for all tests (Sidak)
+  double pValue = 1;    // of the tile that differs most, corrected for the number of tiles (Sidak)
+};
+
+// `a` and `b`: each at least two RGB images; all images are independent and of one size.
+Agreement agreement(std::span<const Image> a, std::span<const Image> b);
 
 }  // namespace chromeball

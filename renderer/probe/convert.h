@@ -5,8 +5,10 @@
 #include <functional>
 
 #include "image/image.h"
+#include "image/tonemap.h"
 #include "math/rotation.h"
 #include "probe/mapping.h"
+#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -40,5 +42,13 @@ Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation);
 // called concurrently.
 Image rasterize(Mapping mapping, const ImageSize& size, int samplesPerSide,
                 const std::function<dvec3(const dvec3&)>& radiance);
+
+// A probe tone mapped for a screen.
+
+// Maps the geometric mean of the luminance, which suns hardly change, to middle grey.
+DisplayTransform previewTransform(const Image& latLong);
+
+// The rotated probe as a lat-long map of width / 2 rows, in display-linear colours.
+Image probePreview(const Probe& probe, int width);
 
 }  // namespace chromeball

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "math/vec.h"
 
 namespace chromeball {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 
 namespace chromeball {
 namespace {

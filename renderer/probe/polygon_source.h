@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "image/image.h"
-#include "math/spherical_polygon.h"
+#include "math/polygon.h"
 #include "probe/load.h"
 
 namespace chromeball {

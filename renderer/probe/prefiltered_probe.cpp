@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "probe/convert.h"
 #include "probe/convolve.h"
 #include "probe/irradiance.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "image/image.h"
-#include "math/spherical_polygon.h"
+#include "math/polygon.h"
 
 namespace chromeball {
 

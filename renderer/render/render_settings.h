@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -10,11 +11,28 @@
 
 #include "approximate/occlusion.h"
 #include "film/aov.h"
-#include "render/integrator_kind.h"
 #include "render/shard.h"
 #include "transport/path_settings.h"
 
 namespace chromeball {
+
+// The integrators by name.
+
+enum class IntegratorKind {
+  Path,
+  Direct,            // paths of one bounce
+  AmbientOcclusion,  // environment mapping with both kinds of occlusion
+  EnvironmentMap,
+};
+
+// In the order of IntegratorKind.
+inline constexpr std::array<std::string_view, 4> kIntegratorNames = {
+    "path", "direct", "ambient-occlusion", "environment-map"};
+
+// Whether it takes the probe's light from prefiltered maps (environment_map.h).
+constexpr bool usesEnvironment(IntegratorKind kind) {
+  return kind == IntegratorKind::AmbientOcclusion || kind == IntegratorKind::EnvironmentMap;
+}
 
 // Of light samples and bounces (guide_training.h). `Auto` guides if that is worth its time;
 // `On` guides light samples wherever that reduces their variance, and bounces always.

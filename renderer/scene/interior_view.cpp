@@ -4,7 +4,6 @@
 #include <array>
 
 #include "scene/eye_view.h"
-#include "scene/outside_view.h"
 #include "scene/placed_triangles.h"
 
 namespace chromeball {

@@ -2,7 +2,7 @@
 #include "session/choose_camera.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "description/render_description.h"
 #include "scene/framing.h"
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include "base/error.h"
-#include "composite/ground.h"
 #include "composite/local_scene.h"
 #include "composite/plate.h"
 #include "composite/reflectance.h"

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "lighting/combined_light.h"
 #include "lighting/finite_surroundings.h"
-#include "lighting/split_probe.h"
+#include "lighting/scene_sources.h"
+#include "lighting/suns.h"
 #include "probe/irradiance.h"
 #include "probe/polygon_source.h"
 #include "session/load_scene.h"

@@ -5,7 +5,6 @@
 #include "math/vec.h"
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
-#include "shading/map_lobes.h"
 
 namespace chromeball {
 

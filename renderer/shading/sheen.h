@@ -8,7 +8,6 @@
 #include "scene/surface.h"
 #include "shading/bsdf_sample.h"
 #include "shading/bsdf_tables.h"
-#include "shading/map_lobes.h"
 
 namespace chromeball {
 

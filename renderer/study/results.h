@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "measure/agreement.h"
 #include "measure/bias_variance.h"
 #include "measure/power_law.h"
+#include "measure/statistics.h"
 #include "study/render_store.h"
 
 namespace chromeball {

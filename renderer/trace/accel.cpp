@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "trace/edge.h"
 #include "trace/filter.h"
+#include "trace/ray.h"
 
 namespace chromeball {
 namespace {
@@ -61,7 +61,7 @@ bool Accel::closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const 
   return true;
 }
 
-// Replaces `hit` by the triangle in front of it if the ray grazes an edge (trace/edge.h); repeated
+// Replaces `hit` by the triangle in front of it if the ray grazes an edge (trace/ray.h); repeated
 // up to three times, for corners. Triangles that share an edge are at similar distances; other hits
 // of the turned ray are ignored.
 void Accel::resolveEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const {

@@ -4,7 +4,7 @@
 #include "scene/extended_surface.h"
 #include "trace/accel.h"
 #include "transport/light_groups.h"
-#include "transport/mis.h"
+#include "transport/path_settings.h"
 
 namespace chromeball {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // PathTracer: what a ray finds that hits nothing.
 #include "transport/light_groups.h"
-#include "transport/mis.h"
 #include "transport/path.h"
+#include "transport/path_settings.h"
 
 namespace chromeball {
 

@@ -6,8 +6,8 @@
 
 #include "trace/accel.h"
 #include "transport/light_groups.h"
-#include "transport/mis.h"
 #include "transport/pass_through.h"
+#include "transport/path_settings.h"
 #include "transport/regularization.h"
 
 namespace chromeball {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "math/quantile.h"
+#include "math/cdf.h"
 #include "math/warp.h"
 #include "transport/path.h"
 

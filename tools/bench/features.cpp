@@ -12,7 +12,7 @@
 #include "math/vec.h"
 #include "math/warp.h"
 #include "scene.h"
-#include "transport/mis.h"
+#include "transport/path_settings.h"
 
 namespace chromeball {
 namespace {

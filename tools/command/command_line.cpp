@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "commands.h"
 #include "messages.h"
 #include "option_typos.h"

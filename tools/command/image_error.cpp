@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"

@@ -4,8 +4,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/printable.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"

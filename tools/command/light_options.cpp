@@ -4,7 +4,7 @@
 #include <charconv>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "input_image.h"
 #include "messages.h"
 #include "probe/edit.h"

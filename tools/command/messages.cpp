@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "base/message.h"
-#include "base/printable.h"
+#include "base/text.h"
 #include "scene_options.h"
 
 namespace chromeball {

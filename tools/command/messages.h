@@ -9,7 +9,7 @@
 namespace chromeball {
 
 void warn(const std::string& text);  // "chromeball: warning: ..."; --quiet does not silence it
-void note(const std::string& text);  // "chromeball: ...", printable() (base/printable.h)
+void note(const std::string& text);  // "chromeball: ...", printable() (base/text.h)
 
 // All warnings, and the notes unless `quiet`; each with the option that resolves it.
 void print(const Messages& messages, bool quiet);

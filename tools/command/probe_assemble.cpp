@@ -10,7 +10,7 @@
 #include "busy_line.h"
 #include "image/io/write_image.h"
 #include "messages.h"
-#include "probe/capture/assembly_preview.h"
+#include "probe/capture/assemble.h"
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
 #include "probe/solid_angle.h"

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "busy_line.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "busy_line.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"

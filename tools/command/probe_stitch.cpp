@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/printable.h"
+#include "base/text.h"
 #include "busy_line.h"
 #include "front/arguments.h"
 #include "front/tile_file.h"

@@ -13,7 +13,6 @@
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_list.h"
 #include "messages.h"
-#include "probe/capture/clipped_sun.h"
 #include "probe/capture/sun_from_ball.h"
 #include "probe/sky.h"
 #include "probe_commands.h"

@@ -10,8 +10,8 @@
 #include "messages.h"
 #include "probe/load.h"
 #include "probe/probe.h"
-#include "relight/transfer/escaping_path.h"
 #include "relight/transfer/glossy_model.h"
+#include "relight/transfer/transfer_points.h"
 
 namespace chromeball {
 namespace {

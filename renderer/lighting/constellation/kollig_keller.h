@@ -27,4 +27,16 @@ Partition kolligKellerRegions(const Image& latLong, int count);
 // irradiance of the region.
 Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed);
 
+// `lightgen` (Cohen and Debevec, HDRShop plug-in, 2001; HDRI book, section 9.6.2): K-means on the
+// sphere from random starts.
+
+// Lights start at `count` different cells, drawn with probability proportional to luminance, and
+// move by Lloyd's iteration to convergence. The result is the one with the smallest objective
+// (spherical_kmeans.h) out of four starts.
+Constellation lightGen(const TexelTable& table, int count, uint64_t seed);
+Constellation lightGen(const Image& latLong, int count, uint64_t seed);
+
+// The regions of those lights. Black cells belong to the nearest light; a black map has no region.
+Partition lightGenRegions(const Image& latLong, int count, uint64_t seed);
+
 }  // namespace chromeball

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
-#include "base/printable.h"
+#include "base/text.h"
 #include "lighting/export/light_file.h"
 
 namespace chromeball {

@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "image/tonemap.h"
 #include "math/icosphere.h"
-#include "probe/preview.h"
+#include "probe/convert.h"
 
 namespace chromeball {
 namespace {

@@ -3,6 +3,8 @@
 // sections 9.2.1, 9.3.1 and 9.3.3).
 #pragma once
 
+#include <vector>
+
 #include "probe/capture/capture_view.h"
 #include "probe/mapping.h"
 
@@ -35,5 +37,19 @@ void fillBlind(const BlindFill& fill, Assembly& assembly);
 // its own. It is computed from a coarse map to the full one, with a fixed number of relaxations of
 // each.
 void inpaintBlind(Assembly& assembly);
+
+// A picture of how a probe was assembled.
+
+struct PhotographPreview {
+  const Image* image;
+  const Image* mask;  // empty for none
+  Circle circle;
+  double gain;  // brings the photograph to the radiance of the probe
+};
+
+// The photographs side by side, with their circles in red and the parts that the mask excludes
+// darker; below them the probe (which may be filled), with stripes over its blind texels.
+// Display-linear colours in [0, 1]; at most 1024 pixels wide.
+Image assemblyPreview(const std::vector<PhotographPreview>& photographs, const Assembly& assembly);
 
 }  // namespace chromeball

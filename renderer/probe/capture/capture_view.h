@@ -4,7 +4,6 @@
 
 #include <memory>
 
-#include "probe/capture/camera_position.h"
 #include "probe/capture/optics.h"
 #include "probe/capture/photograph.h"
 

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "image/image.h"
-#include "probe/capture/camera_position.h"
-#include "probe/capture/circle.h"
+#include "probe/capture/photograph.h"
 #include "probe/mapping.h"
 
 namespace chromeball {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "image/image.h"
+#include "probe/capture/response_curve.h"
 #include "probe/mapping.h"
 
 namespace chromeball {
@@ -55,5 +56,25 @@ inline float hatWeight(float level) {
 // The step, of rows and columns, at which at most about a million pixels are left: enough for
 // statistics of an image.
 int sampleStep(const Image& image);
+
+// Whether photographs of one view differ as their exposures say.
+
+struct ExposureAgreement {
+  size_t longer, shorter;  // two exposures, by index
+  double factor;           // of their green channels' exposures, as given
+  // What was found instead, over what was given: the median over pixels for each channel; NaN for a
+  // channel without enough pixels that both exposures show well.
+  dvec3 found;
+  size_t pixels = 0;  // in the channel that has the fewest
+
+  // The largest difference of `found` from 1; nullopt if no channel has enough pixels.
+  std::optional<double> error() const;
+};
+
+// For each exposure but the longest, with the next longer one. Pixels are compared where, by the
+// longer one, it has at most 85% and the shorter one at least 1% of the exposure of white: a choice
+// by the shorter one would prefer those that noise brightens.
+std::vector<ExposureAgreement> exposureAgreement(std::span<const Exposure> exposures,
+                                                 const ResponseCurve& response);
 
 }  // namespace chromeball

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "math/quantile.h"
+#include "math/cdf.h"
 
 namespace chromeball {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/quantile.h"
+#include "math/cdf.h"
 #include "probe/capture/exposure.h"
 
 namespace chromeball {

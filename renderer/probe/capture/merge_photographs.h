@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/message.h"
-#include "probe/capture/exposure_agreement.h"
+#include "probe/capture/exposure.h"
 #include "probe/capture/merge_exposures.h"
 
 namespace chromeball {

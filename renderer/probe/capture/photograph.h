@@ -2,15 +2,28 @@
 // A photograph of a mirror ball, or through a fisheye lens.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/message.h"
 #include "image/image.h"
-#include "probe/capture/circle.h"
+#include "math/vec.h"
 
 namespace chromeball {
+
+// A circle in a photograph.
+
+// In pixels, x right and y down from the top left corner of the image; texel (x, y) covers
+// [x, x + 1) x [y, y + 1).
+struct Circle {
+  glm::dvec2 centre;
+  double radius;
+};
+
+// The share of the circle's area that is inside an image of this size, to 1%.
+double shareInside(const Circle& circle, int width, int height);
 
 // The linear colour of a file, three channels, finite and not negative.
 struct LoadedPhotograph {
@@ -47,6 +60,22 @@ class PhotographDisc {
   const Image& image_;
   Circle circle_;
   const Image& mask_;
+};
+
+// Where a photograph of a ball was taken from.
+
+// Seen from the ball (or, for a lens, opposite to where it looks), in degrees: azimuth 0 is +Z, 90
+// is +X; elevation 90 is +Y. The camera stands upright: its right is horizontal.
+struct CameraPosition {
+  double azimuth = 0, elevation = 0;
+
+  // Columns: to the camera's right, up, and from the ball to the camera.
+  glm::dmat3 axes() const {
+    const double a = azimuth * kPiD / 180, e = elevation * kPiD / 180;
+    const glm::dvec3 right(std::cos(a), 0, -std::sin(a));
+    const glm::dvec3 back(std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a));
+    return {right, glm::cross(back, right), back};
+  }
 };
 
 }  // namespace chromeball

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "image/image.h"
-#include "probe/capture/circle.h"
+#include "probe/capture/photograph.h"
 
 namespace chromeball {
 

@@ -2,7 +2,11 @@
 #include "probe/capture/stitch.h"
 
 #include <algorithm>
+#include <map>
 
+#include "base/error.h"
+#include "math/dense_solvers.h"
+#include "probe/capture/tile.h"
 #include "probe/convert.h"
 #include "probe/solid_angle.h"
 
@@ -38,6 +42,72 @@ ImageSize stitchedSize(const std::vector<Tile>& tiles) {
   for (const Tile& tile : tiles) finest = std::min(finest, TileView(tile).pixelAngle());
   const int height = 2 * std::clamp(int(std::ceil(kPiD / finest / 2)), 1, 1 << 14);
   return {2 * height, height};
+}
+
+namespace {
+
+constexpr int kHeight = 128;  // of the map of directions
+
+struct Ratio {
+  double logarithm;  // of the second tile's luminance over the first's
+  double weight;
+};
+using Pair = std::pair<int, int>;
+
+std::map<Pair, std::vector<Ratio>> ratiosOf(const std::vector<TileView>& views) {
+  std::map<Pair, std::vector<Ratio>> ratios;
+  for (const Overlap& o : overlapsOf(views, kHeight)) {
+    const double first = double(luminance(views[size_t(o.first)].at(o.direction).radiance));
+    const double second = double(luminance(views[size_t(o.second)].at(o.direction).radiance));
+    if (first > 0 && second > 0)
+      ratios[{o.first, o.second}].push_back({std::log(second / first), double(o.weight)});
+  }
+  return ratios;
+}
+
+// The weighted median, and all the weight.
+Ratio medianOf(std::vector<Ratio> ratios) {
+  std::ranges::sort(ratios, {}, &Ratio::logarithm);
+  double all = 0, below = 0;
+  for (const Ratio& ratio : ratios) all += ratio.weight;
+  for (const Ratio& ratio : ratios)
+    if ((below += ratio.weight) >= all / 2) return {ratio.logarithm, all};
+  return {0, 0};
+}
+
+void checkConnected(const std::vector<Tile>& tiles,
+                    const std::map<Pair, std::vector<Ratio>>& ratios) {
+  std::vector<bool> reached(tiles.size());
+  reached[0] = true;
+  for (size_t round = 0; round < tiles.size(); ++round)
+    for (const auto& [pair, ignored] : ratios)
+      if (reached[size_t(pair.first)] || reached[size_t(pair.second)])
+        reached[size_t(pair.first)] = reached[size_t(pair.second)] = true;
+  for (size_t i = 0; i < tiles.size(); ++i)
+    if (!reached[i])
+      throwInput("{}: is not connected to {} by tiles that overlap", tiles[i].name, tiles[0].name);
+}
+
+}  // namespace
+
+std::vector<double> tileGains(const std::vector<Tile>& tiles) {
+  const std::vector<TileView> views(tiles.begin(), tiles.end());
+  const auto ratios = ratiosOf(views);
+  checkConnected(tiles, ratios);
+  LeastSquares equations(int(tiles.size()));
+  std::vector<LeastSquares::Term> sum;
+  for (int i = 0; i < int(tiles.size()); ++i) sum.push_back({i, 1});
+  equations.add(sum, 0);
+  for (const auto& [pair, all] : ratios) {
+    const Ratio median = medianOf(all);
+    const LeastSquares::Term row[] = {{pair.first, 1}, {pair.second, -1}};
+    equations.add(row, median.logarithm, median.weight);
+  }
+  const auto solution = equations.solve();
+  if (!solution) throwInput("{}: the overlaps of the tiles are too small", tiles[0].name);
+  std::vector<double> gains;
+  for (const double logarithm : *solution) gains.push_back(std::exp(logarithm));
+  return gains;
 }
 
 }  // namespace chromeball

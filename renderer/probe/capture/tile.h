@@ -2,7 +2,9 @@
 // A photograph of a part of the surroundings, of which the camera's direction is known.
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "image/image.h"
 #include "math/rotation.h"
@@ -37,5 +39,16 @@ class TileView {
   glm::dquat pose_;
   double halfWidth_, halfHeight_;  // at distance 1
 };
+
+// Where tiles see the same directions.
+
+struct Overlap {
+  int first, second;  // indices of two tiles
+  glm::dvec3 direction;
+  float weight;  // product of both windows, times the solid angle
+};
+
+// At the texel centres of a lat-long map of this height, row by row.
+std::vector<Overlap> overlapsOf(std::span<const TileView> views, int height);
 
 }  // namespace chromeball

@@ -6,10 +6,10 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/image.h"
+#include "math/cdf.h"
 #include "math/dense_solvers.h"
-#include "math/quantile.h"
 #include "probe/capture/stitch.h"
-#include "probe/capture/tile_overlaps.h"
+#include "probe/capture/tile.h"
 
 namespace chromeball {
 namespace {

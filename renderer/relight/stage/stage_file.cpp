@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
-#include "base/printable.h"
+#include "base/text.h"
 
 namespace chromeball {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "bake/bake.h"
 #include "bake/placed_mesh.h"
-#include "relight/transfer/light_basis.h"
 #include "relight/transfer/vertex_transfer.h"
 #include "scene/gltf/custom_data.h"
 

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/printable.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "scene/gltf/accessor.h"
 
 namespace chromeball {

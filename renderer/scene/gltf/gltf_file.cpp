@@ -8,10 +8,9 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/json_text.h"
-#include "base/printable.h"
+#include "base/text.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_json.h"
-#include "scene/gltf/uri.h"
 
 namespace chromeball {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/json.h"
 #include "base/json_text.h"
-#include "base/printable.h"
+#include "base/text.h"
 #include "scene/gltf/object_types.h"
 
 namespace chromeball {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <map>
 
-#include "base/printable.h"
+#include "base/text.h"
 #include "scene/builder/scene_builder.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/extension_members.h"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "base/printable.h"
+#include "base/text.h"
 #include "scene/gltf/animation.h"
 #include "scene/gltf/draco.h"
 #include "scene/gltf/gltf_file.h"

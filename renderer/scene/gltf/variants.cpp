@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "base/suggest.h"
+#include "base/text.h"
 #include "scene/gltf/extension_members.h"
 
 namespace chromeball {

@@ -2,7 +2,7 @@
 #include "scene/solve/point_problem.h"
 
 #include "math/dense_solvers.h"
-#include "scene/solve/spread_rotations.h"
+#include "math/rotation.h"
 
 namespace chromeball {
 

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "base/error.h"
+#include "math/rotation.h"
 #include "scene/solve/levenberg_marquardt.h"
-#include "scene/solve/spread_rotations.h"
 
 namespace chromeball {
 namespace {

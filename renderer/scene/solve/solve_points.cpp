@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "math/rotation.h"
 #include "scene/solve/levenberg_marquardt.h"
 #include "scene/solve/point_problem.h"
-#include "scene/solve/spread_rotations.h"
 
 namespace chromeball {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "probe/convert.h"
 #include "probe/mapping.h"
-#include "probe/preview.h"
 #include "study/report/log_log_plot.h"
 #include "study/report/report_images.h"
 

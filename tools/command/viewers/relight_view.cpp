@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "image/image.h"
 #include "relight/stage/light_stage.h"
-#include "relight/stage/relight.h"
+#include "relight/stage/relit_stage.h"
 
 namespace chromeball {
 namespace {

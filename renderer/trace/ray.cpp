@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/edge.h"
+#include "trace/ray.h"
 
 #include <array>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/blocked_field.h"
+#include "lighting/luminance_field.h"
 
 #include <algorithm>
 
