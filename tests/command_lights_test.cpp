@@ -143,7 +143,8 @@ TEST(CommandLights, AnAngleGivesARadiance) {
   const std::string probe = folder / "studio.exr", out = folder / "a.json";
   writeImage(probe, studioProbe({64, 32}));
   run({"lights", probe, "--method", "median-cut", "--count", "3", "-o", out, "--angle", "1"});
-  for (const json& light : jsonOfFile(out)["lights"]) {
+  const json file = jsonOfFile(out);
+  for (const json& light : file["lights"]) {
     EXPECT_EQ(light["angle"], 1);
     const double irradiance = light["irradiance"][1];
     EXPECT_NEAR(light["radiance"][1].get<double>() * 2.3925e-4 / irradiance, 1, 1e-4);

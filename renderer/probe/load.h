@@ -17,11 +17,11 @@ namespace chromeball {
 struct LoadedProbe {
   Image latLong;                       // three channels, finite, not negative
   Mapping mapping = Mapping::LatLong;  // of the file
-  int fileWidth = 0, fileHeight = 0;
-  bool detected = false;  // the mapping; false: given by the user
-  bool certain = true;    // false: the detected mapping deserves a warning
-  std::string reason;     // for the detected mapping: "its shape is 2:1"
-  bool turned = false;    // by 180 degrees: a lat-long map whose `envmap` attribute is set
+  int fileWidth = 0, fileHeight = 0;   // or of the map from memory; 0: there is neither
+  bool detected = false;               // the mapping; false: given by the user
+  bool certain = true;                 // false: the detected mapping deserves a warning
+  std::string reason;                  // for the detected mapping: "its shape is 2:1"
+  bool turned = false;  // by 180 degrees: a lat-long map whose `envmap` attribute is set
   RepairReport repair;
   bool hasIntegerTexels = false;  // of 8 or 16 bits
   float maximum = 0;              // over texels and channels

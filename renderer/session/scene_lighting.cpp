@@ -47,6 +47,7 @@ LoadedProbe loadWholeProbe(const RenderDescription& job, Scene& scene) {
   if (job.probe.map) {
     checkProbeMap(*job.probe.map);
     loaded.latLong = *job.probe.map;
+    loaded.fileWidth = loaded.latLong.width, loaded.fileHeight = loaded.latLong.height;
     return loaded;
   }
   if (scene.environment) {
