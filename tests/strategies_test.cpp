@@ -3,7 +3,9 @@
 // independent seeds on each tile, Sidak-corrected.
 #include <gtest/gtest.h>
 
+#include "lighting/methods.h"
 #include "measure/statistics.h"
+#include "probe/synth.h"
 #include "small_scenes.h"
 
 namespace chromeball::strategies_test {
@@ -33,6 +35,19 @@ std::vector<std::vector<double>> tileMeans(const NamedScene& named, const char* 
       }
   }
   return means;
+}
+
+// The table says of each strategy what it says of itself, of a probe that has a sun.
+TEST(Strategies, TheTableKnowsWhichAreUnbiased) {
+  Image map = constantProbe({128, 64}, Rgb(0.2f));
+  map.setRgb(30, 20, Rgb(50'000));
+  const Probe probe(map);
+  for (const LightingMethod& method : lightingMethods()) {
+    const auto strategy =
+        method.makeStrategy(probe, StrategyOptions{}, std::max(method.counts.min, 2));
+    EXPECT_EQ(strategy->unbiased(), method.isUnbiased) << method.name;
+    EXPECT_NE(strategyTable().find(fmt::format("| `{}", method.name)), std::string::npos);
+  }
 }
 
 TEST(SlowStrategies, allUnbiasedOnesRenderTheSameImage) {

@@ -7,6 +7,7 @@
 
 #include "description/capabilities.h"
 #include "front/setting_table.h"
+#include "lighting/methods.h"
 
 namespace chromeball {
 namespace {
@@ -128,6 +129,8 @@ std::string settingsPage() {
     for (const Setting& setting : settingTable())
       if (setting.section == section.name) page += row(setting, hasKeys);
   }
+  page += "\n## Lighting strategies\n\nSee [methods](methods.md#lighting-strategies).\n\n" +
+          strategyTable();
   page +=
       "\n## What does not go together\n\nOther features may be combined.\n\n"
       "| This | and | |\n| --- | --- | --- |\n";

@@ -47,7 +47,8 @@ Strategy strata(const Probe& probe, const StrategyOptions&, int count) {
 }
 
 // A method whose strategy replaces the probe by its lights, made with seed 0.
-LightingMethod replacing(std::string_view name, std::string_view summary, const Lights& lights) {
+LightingMethod replacing(std::string_view name, std::string_view summary, std::string_view source,
+                         const Lights& lights) {
   const auto makeStrategy = [make = lights.make](const Probe& probe, const StrategyOptions& options,
                                                  int count) -> Strategy {
     const MadeLights made = make(probe.latLong(), {.count = count});
@@ -57,7 +58,7 @@ LightingMethod replacing(std::string_view name, std::string_view summary, const 
     return std::make_unique<ShownLights>(std::move(strategy),
                                          shownLights(made.lights, probe.rotation()), ambient);
   };
-  return {name, summary, lights.counts, makeStrategy, true, lights};
+  return {name, summary, source, lights.counts, makeStrategy, false, true, lights};
 }
 
 using Areas = std::unique_ptr<const LightAreas>;
@@ -66,8 +67,8 @@ Areas asRegions(RegionAreas&& regions) { return std::make_unique<RegionAreas>(st
 Areas asDiscs(RegionAreas&& regions) { return std::make_unique<DiscAreas>(regions.lights()); }
 
 // A method whose strategy replaces the probe by area lights, for the regions of `lights`.
-LightingMethod replacing(std::string_view name, std::string_view summary, const Lights& lights,
-                         Areas (*shape)(RegionAreas&&)) {
+LightingMethod replacing(std::string_view name, std::string_view summary, std::string_view source,
+                         const Lights& lights, Areas (*shape)(RegionAreas&&)) {
   const auto makeStrategy = [regions = lights.regions, shape](const Probe& probe,
                                                               const StrategyOptions& options,
                                                               int count) -> Strategy {
@@ -78,7 +79,7 @@ LightingMethod replacing(std::string_view name, std::string_view summary, const 
     if (!options.showLights) return strategy;
     return std::make_unique<ShownLights>(std::move(strategy), std::move(all));
   };
-  return {name, summary, lights.counts, makeStrategy, true, {}};
+  return {name, summary, source, lights.counts, makeStrategy, false, true, {}};
 }
 
 MadeLights fitLights(const Image& latLong, const LightRequest& request) {
@@ -129,39 +130,55 @@ std::string helpLine(const std::string& name, std::string_view summary, const st
 const std::vector<LightingMethod>& lightingMethods() {
   constexpr CountRange kRegions{2, 4096, 64}, kStrata{2, 4096, 8};
   static const std::vector<LightingMethod> kMethods{
-      {"bsdf", "no light samples; BSDF samples find the probe", {}, sampling<BsdfOnly>},
-      {"uniform", "samples uniform over the hemisphere", {}, sampling<Uniform>},
-      {"importance", "samples proportional to luminance", {}, compensated<Importance>},
-      {"product", "samples proportional to luminance x cosine", {}, sampling<Product>},
-      {"suns", "each sun in the probe as a disc of its own", {}, suns, false, sunLights()},
-      replacing("median-cut", "a light for each region of equal energy", medianCutLights(kRegions)),
+      {"bsdf", "no light samples; BSDF samples find the probe", "", {}, sampling<BsdfOnly>, true},
+      {"uniform", "samples uniform over the hemisphere", "", {}, sampling<Uniform>, true},
+      {"importance",
+       "samples proportional to luminance",
+       "Pharr and Humphreys 2004; HDRI book, 9.6.3; Karlík et al. 2019",
+       {},
+       compensated<Importance>,
+       true},
+      {"product", "samples proportional to luminance x cosine", "", {}, sampling<Product>, true},
+      {"suns",
+       "each sun in the probe as a disc of its own",
+       "HDRI book, 9.6.1",
+       {},
+       suns,
+       false,
+       false,
+       sunLights()},
+      replacing("median-cut", "a light for each region of equal energy", "Debevec 2005",
+                medianCutLights(kRegions)),
       replacing("median-cut-centre", "the same, with lights at the centres of the regions",
-                centreCutLights(kRegions)),
-      replacing("median-cut-flat", "the same, with the map cut as if it were a flat picture",
+                "HDRI book, 9.6.2", centreCutLights(kRegions)),
+      replacing("median-cut-flat", "the same, with the map cut as if it were a flat picture", "",
                 flatCutLights(kRegions)),
-      replacing("median-cut-area", "each region of median-cut as an area light",
+      replacing("median-cut-area", "each region of median-cut as an area light", "",
                 medianCutLights(kRegions), asRegions),
-      replacing("median-cut-centre-area", "the same for median-cut-centre",
+      replacing("median-cut-centre-area", "the same for median-cut-centre", "",
                 centreCutLights(kRegions), asRegions),
-      replacing("median-cut-flat-area", "the same for median-cut-flat", flatCutLights(kRegions),
+      replacing("median-cut-flat-area", "the same for median-cut-flat", "", flatCutLights(kRegions),
                 asRegions),
-      replacing("median-cut-disc", "discs with the solid angles of median-cut's regions",
+      replacing("median-cut-disc", "discs with the solid angles of median-cut's regions", "",
                 medianCutLights(kRegions), asDiscs),
       replacing("variance-cut", "a light for each region of small variance",
-                varianceCutLights(kRegions)),
-      replacing("lightgen", "K-means on the sphere, from random starts", lightGenLights(kRegions)),
+                "Viriyothai and Debevec 2009", varianceCutLights(kRegions)),
+      replacing("lightgen", "K-means on the sphere, from random starts",
+                "Cohen and Debevec 2001; HDRI book, 9.6.2", lightGenLights(kRegions)),
       replacing("kollig-keller", "K-means on the sphere, adding one light at a time",
-                kolligKellerLights(kRegions)),
-      {"kollig-keller-strata", "a random direction in each region of kollig-keller", kStrata,
-       strata, false, strataLights(kStrata)},
+                "Kollig and Keller 2003", kolligKellerLights(kRegions)),
+      {"kollig-keller-strata", "a random direction in each region of kollig-keller",
+       "Kollig and Keller 2003", kStrata, strata, true, false, strataLights(kStrata)},
       replacing("kollig-keller-average", "the same, with the average colour of the region",
-                kolligKellerLights(kStrata), asRegions),
-      replacing("cube-grid", "6 N^2 lights on the faces of a cube", cubeGridLights({1, 26, 10})),
-      replacing("penrose", "blue-noise points on a Penrose tiling", penroseLights({2, 4096, 300})),
+                "Kollig and Keller 2003; HDRI book, 9.6.2", kolligKellerLights(kStrata), asRegions),
+      replacing("cube-grid", "6 N^2 lights on the faces of a cube", "HDRI book, figure 9.31",
+                cubeGridLights({1, 26, 10})),
+      replacing("penrose", "blue-noise points on a Penrose tiling",
+                "Ostromoukhov, Donohue and Jodoin 2004", penroseLights({2, 4096, 300})),
       replacing("irradiance-fit", "the lights that minimise the error of irradiance",
-                fit(fitLights)),
+                "Madsen et al. 2003; Madsen and Laursen 2007", fit(fitLights)),
       replacing("irradiance-fit-ambient", "the same, with constant light from all directions",
-                fit(fitLightsAndAmbient)),
+                "Madsen et al. 2003", fit(fitLightsAndAmbient)),
   };
   return kMethods;
 }
@@ -211,6 +228,20 @@ std::string strategyHelp() {
                            fmt::format(" (N {}, default {})", rangeOf(counts), counts.usual));
   }
   return help;
+}
+
+std::string strategyTable() {
+  std::string table =
+      "| Name | Method | Source | Unbiased | N | Default |\n| --- | --- | --- | --- | --- | --- "
+      "|\n";
+  for (const LightingMethod& m : lightingMethods()) {
+    const bool counts = m.counts.max > 0;
+    table +=
+        fmt::format("| `{}{}` | {} | {} | {} | {} | {} |\n", m.name, counts ? ":N" : "", m.summary,
+                    m.source, m.isUnbiased ? "yes" : "no", counts ? rangeOf(m.counts) : "",
+                    counts ? std::to_string(m.counts.usual) : "");
+  }
+  return table;
 }
 
 std::string lightMethodHelp() {

@@ -42,11 +42,13 @@ struct MadeLights {
 struct LightingMethod {
   std::string_view name;     // as on the command line
   std::string_view summary;  // one line, for help
+  std::string_view source;   // author and year, or section; empty: none
 
   // As a strategy for rendering: NAME, or NAME:COUNT.
   CountRange counts;
   std::function<std::unique_ptr<LightSource>(const Probe&, const StrategyOptions&, int count)>
       makeStrategy;
+  bool isUnbiased = false;
   bool replacesProbe = false;  // by lights, which the camera can see (StrategyOptions::showLights)
 
   // As directional lights that replace a lat-long map.
@@ -83,5 +85,8 @@ void checkLightCount(std::string_view method, const LightRequest& request);
 // For --help: one line for each strategy, or for each method that makes lights.
 std::string strategyHelp();
 std::string lightMethodHelp();
+
+// The strategies as a table in Markdown, for documentation.
+std::string strategyTable();
 
 }  // namespace chromeball
