@@ -167,7 +167,7 @@ TEST_F(SlowCommandCapture, BadSeriesAreRejected) {
   expect(joined(files, {"-o", folder_ / "a.png"}), "cannot hold the range");
   expect(joined(files, {"-o", files[0]}), "cannot hold the range");
   const std::string plain = write("plain.png", radiance_);
-  expect({plain, "-o", out_}, "plain.png: has no exposure time in an EXIF block; give --exposures");
+  expect({plain, "-o", out_}, "plain.png: has no exposure time in an EXIF block; give the exposures");
   expect({files[0], write("none.exr", radiance_), "-o", out_}, "none.exr: has no exposure time");
   expect({files[0], photograph("iso.png", radiance_, 1, {exposureTime(1, 3), fNumber(2, 1)}), "-o",
           out_},
@@ -185,7 +185,7 @@ TEST_F(SlowCommandCapture, BadSeriesAreRejected) {
                     black = write("black.png", constantProbe({8, 4}, Rgb(0)));
   expect({white, white, "-o", out_, "--exposures", "1,2"}, "saturated in all exposures");
   expect({black, black, "-o", out_, "--exposures", "1,2"}, "black in all exposures");
-  expect(withOptions({"--exposures", "1,2"}), "--exposures: has 2 numbers for 3 photographs");
+  expect(withOptions({"--exposures", "1,2"}), "exposures: has 2 numbers for 3 photographs");
   expect(withOptions({"--exposures", "1,2,0"}), "`0` should be above 0");
   expect(withOptions({"--exposures", "1,2,1/0"}), "`1/0` should be above 0");
   expect(withOptions({"--exposures", "1,,2"}), "--exposures");

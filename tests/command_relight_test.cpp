@@ -211,10 +211,10 @@ TEST_F(CommandRelight, RefusesBadOptions) {
     words.insert(words.end(), more.begin(), more.end());
     refuses(words, reason);
   };
-  refusesOptions({"--domain", "haar"}, "--domain haar: needs cube:N with a power of two");
-  refusesOptions({"--domain", "dct"}, "--domain dct: needs lat-long:WxH with multiples of 8");
-  refusesOptions({"--domain", "sh"}, "--domain sh: needs spherical harmonics");
-  refusesOptions({"--domain", "wavelet"}, "--domain: `wavelet` is unknown");
+  refusesOptions({"--domain", "haar"}, "domain haar: needs cube:N with a power of two");
+  refusesOptions({"--domain", "dct"}, "domain dct: needs lat-long:WxH with multiples of 8");
+  refusesOptions({"--domain", "sh"}, "domain sh: needs spherical harmonics");
+  refusesOptions({"--domain", "wavelet"}, "domain: `wavelet` is unknown");
   for (const char* keep : {"0", "0%", "101%", "-5", "many", "", "%"}) {
     refusesOptions({"--keep", keep}, "--keep: ");
     refusesOptions({"--keep-light", keep}, "--keep-light: ");

@@ -437,7 +437,7 @@ TEST(MotionBlur, WarnsOfFewStepsAndOfWhatVanishes) {
   // Half a turn along one chord: its middle is at the centre instead of 1 m away.
   EXPECT_NE(messages("1").find("misses their way by up to 1 m"), std::string::npos)
       << messages("1");
-  EXPECT_NE(messages("1").find("--shutter-steps 4"), std::string::npos);
+  EXPECT_NE(messages("1").find("4 steps of the shutter"), std::string::npos);
   EXPECT_EQ(messages("64").find("their way"), std::string::npos) << messages("64");
   EXPECT_NE(messages("64").find("`ghost` appears, vanishes or is mirrored"), std::string::npos);
 }

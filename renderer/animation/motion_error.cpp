@@ -76,8 +76,8 @@ std::vector<std::string> MotionError::warnings(const std::string& file, int step
   constexpr double kTolerance = 0.005;
   const std::string remedy =
       steps < kMostMotionSteps
-          ? fmt::format("--shutter-steps {} is closer", std::min(4 * steps, kMostMotionSteps))
-          : "a shorter --shutter is closer";
+          ? fmt::format("{} steps of the shutter are closer", std::min(4 * steps, kMostMotionSteps))
+          : "a shorter shutter is closer";
   std::vector<std::string> lines;
   const auto check = [&](const Way& way, const char* moves, const char* whose, const char* unit) {
     if (way.miss <= kTolerance * way.length) return;

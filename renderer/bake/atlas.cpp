@@ -84,7 +84,7 @@ Atlas atlasOfTexels(const std::vector<Chart>& charts, double metres, int padding
       return std::move(*atlas);
   throwInput("{}: texels of {:g} m need a page of more than {} x {}; {}", location, metres,
              kMaxPage, kMaxPage,
-             leastPage(charts, padding) ? "give larger ones, or --size"
+             leastPage(charts, padding) ? "give larger ones, or the size of the page"
                                         : "bake the model in parts, or to vertices");
 }
 

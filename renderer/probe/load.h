@@ -40,7 +40,7 @@ inline constexpr const char* kMappingAttribute = "mapping";
 // its texels; others are converted at latLongSize() (convert.h). Throws InputError; it starts with
 // `mappingLocation` if the mapping is at fault.
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping = "auto",
-                      std::string_view mappingLocation = "--probe-mapping");
+                      std::string_view mappingLocation = "mapping");
 
 // Warnings for the user, each "FILE: ..."; often none.
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path);

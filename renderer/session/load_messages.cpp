@@ -83,8 +83,9 @@ void addSources(const LoadedScene& loaded, Collector& messages) {
   if (const double change = unevenness(sources); change > kMaxUnevenness)
     messages.warn(fmt::format(
         "[[source]]: the probe is uneven in the polygons; one constant radiance for each changes "
-        "irradiance by up to {:.2g}% of that on surfaces facing them; smaller polygons (`lights "
-        "--suggest` with a larger number) change it less",
+        "irradiance by up to {:.2g}% of that on surfaces facing them; more and smaller polygons "
+        "change "
+        "it less",
         100 * change));
 }
 

@@ -43,7 +43,7 @@ Metadata attributesOf(const RenderKey& key, uint64_t studySeed) {
 void RenderStore::makeFolder() const {
   std::error_code error;
   fs::create_directories(fs::path(study_.folder) / "renders", error);
-  if (error) throwRun("--output: {}: {}", study_.folder, error.message());
+  if (error) throwRun("output: {}: {}", study_.folder, error.message());
 }
 
 std::string RenderStore::path(const RenderKey& key) const {
@@ -59,7 +59,7 @@ std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
   const ImageFile file = readImageFile(path(key));
   const Metadata& metadata = file.metadata;
   if (const std::string stored = textIn(metadata, "study"); stored != study_.identity)
-    throwInput("--output: {} belongs to another comparison: {}; choose another folder", path(key),
+    throwInput("output: {} belongs to another comparison: {}; choose another folder", path(key),
                differenceOf(stored, study_.identity));
   const Metadata own = attributesOf(key, study_.seed);
   const bool isOther = std::ranges::any_of(own, [&](const auto& attribute) {
@@ -68,7 +68,7 @@ std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
   });
   const std::optional<Image> color = findColor(file);
   if (isOther || !color || color->width != size_.width || color->height != size_.height)
-    throwInput("--output: {} is damaged or was changed; delete it to render it again", path(key));
+    throwInput("output: {} is damaged or was changed; delete it to render it again", path(key));
   StoredRender render;
   render.image = *color;
   render.samples = numberIn(metadata, "samples");

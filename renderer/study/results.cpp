@@ -134,8 +134,8 @@ std::vector<std::string> warningsOf(const Study& study, const StudyResults& resu
   if (worst > kMaxReferenceFraction)
     warnings.push_back(fmt::format(
         "The reference image is noisy: its variance is {:.0f}% of the relMSE of {}. It was "
-        "subtracted, but the confidence intervals of small errors are wide; increase "
-        "--reference-samples.",
+        "subtracted, but the confidence intervals of small errors are wide; give the "
+        "reference more samples.",
         100 * worst, where));
   if (invalid > 0)
     warnings.push_back(

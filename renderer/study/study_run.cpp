@@ -36,9 +36,8 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
       throwInput("{}: {}: {}", location, row, found->why);
     built.prepareSeconds = watch.seconds();
   };
-  for (const std::string& name : study.strategies) build(name, name, "--strategies");
-  if (study.referenceFile.empty())
-    build(kReference, study.referenceStrategy, "--reference-strategy");
+  for (const std::string& name : study.strategies) build(name, name, "strategies");
+  if (study.referenceFile.empty()) build(kReference, study.referenceStrategy, "reference strategy");
   makeWorlds();
   for (const RenderKey& key : renders_) {
     present_.push_back(store.find(key).has_value());
@@ -171,10 +170,10 @@ Reference readReference(const std::string& path, int width, int height, Messages
   const ImageFile file = readImageFile(path);
   if (messages) messages->insert(messages->end(), file.messages.begin(), file.messages.end());
   std::optional<Image> color = findColor(file);
-  if (!color) throwInput("--reference: {}: has no colour", path);
+  if (!color) throwInput("reference: {}: has no colour", path);
   color = inDisplayWindow(*std::move(color), file.placement, path);
   if (color->width != width || color->height != height)
-    throwInput("--reference: {} is {} x {}, but the renders are {} x {}; try --size {}x{}", path,
+    throwInput("reference: {} is {} x {}, but the renders are {} x {}; try a size of {}x{}", path,
                color->width, color->height, width, height, color->width, color->height);
   const std::optional<Image> variance = layerOf(file, "variance", path);
   return {*color, variance && variance->channels == 3 ? *variance : Image()};

@@ -20,7 +20,7 @@ void checkAllOrNone(const std::vector<std::string>& files,
   for (size_t i = 1; i < files.size(); ++i)
     if ((settings[i].*member).has_value() != (settings[0].*member).has_value()) {
       const bool first = (settings[0].*member).has_value();
-      throwInput("{}: has no {} in its EXIF block, but {} has one; give --exposures",
+      throwInput("{}: has no {} in its EXIF block, but {} has one; give the exposures",
                  files[first ? i : 0], name, files[first ? 0 : i]);
     }
 }
@@ -30,15 +30,15 @@ void checkAllOrNone(const std::vector<std::string>& files,
 std::vector<CameraSettings> cameraSettings(const std::vector<std::string>& files,
                                            const std::vector<double>& times,
                                            const std::vector<double>& apertures) {
-  checkCount(times, files.size(), "--exposures");
-  checkCount(apertures, files.size(), "--apertures");
+  checkCount(times, files.size(), "exposures");
+  checkCount(apertures, files.size(), "apertures");
   std::vector<CameraSettings> all;
   for (size_t i = 0; i < files.size(); ++i) {
     CameraSettings settings;
     if (times.empty()) {
       const Exif exif = readExif(files[i]);
       if (!exif.exposureTime)
-        throwInput("{}: has no exposure time in an EXIF block; give --exposures", files[i]);
+        throwInput("{}: has no exposure time in an EXIF block; give the exposures", files[i]);
       settings = {*exif.exposureTime, exif.aperture, exif.iso};
     } else {
       settings.time = times[i];

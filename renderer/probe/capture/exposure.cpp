@@ -32,10 +32,10 @@ class Transmissions {
   void apply(const ApertureRatio& ratio) {
     Entry *from = find(ratio.from), *to = find(ratio.to);
     for (const auto& [entry, number] : {std::pair{from, ratio.from}, {to, ratio.to}})
-      if (!entry) throwInput("--aperture-ratio: no photograph was taken at f/{:g}", number);
+      if (!entry) throwInput("aperture ratio: no photograph was taken at f/{:g}", number);
     if (to->isUsed || from == to)
       throwInput(
-          "--aperture-ratio: {:g}:{:g} changes f/{:g}, which another ratio has used; give the "
+          "aperture ratio: {:g}:{:g} changes f/{:g}, which another ratio has used; give the "
           "ratios in a row, as in 4:8=4.1 8:16=4.2",
           ratio.from, ratio.to, ratio.to);
     to->transmission = from->transmission / ratio.ratio;

@@ -27,8 +27,7 @@ FilterTransmission filterTransmission(const Image& with, const Image* clippedWit
       for (int c = 0; c < 3; ++c) ratios[size_t(c)].push_back(a[c] / b[c]);
     }
   FilterTransmission result{sumWith / sumWithout, dvec3(0), ratios[0].size()};
-  if (result.pixels == 0)
-    throwInput("--calibrate-filter: no pixel is above 0 and not clipped in both images");
+  if (result.pixels == 0) throwInput("no pixel is above 0 and not clipped in both images");
   for (int c = 0; c < 3; ++c) result.median[c] = median(std::move(ratios[size_t(c)]));
   return result;
 }

@@ -36,8 +36,10 @@ void checkFactorsDiffer(const PhotographSeries& series, const std::vector<dvec3>
     return glm::all(glm::lessThan(glm::abs(factor / factors.front() - 1.0), dvec3(kSame)));
   };
   if (factors.size() > 1 && std::ranges::all_of(factors, isFirst))
-    throwInput("{}: has the same exposure as all others; give different ones, or --exposures",
-               series.files.back());
+    throwInput(
+        "{}: has the same exposure as all others; give different ones, or state the "
+        "exposures",
+        series.files.back());
 }
 
 glm::dmat3 toRec709(const std::optional<Chromaticities>& primaries) {
@@ -58,13 +60,12 @@ class FlatFields {
         const auto& own = settings[i].aperture;
         if (aperture && !(own && isSameAperture(*own, *aperture))) continue;
         if (ofPhotograph_[i])
-          throwInput("--flat-field: {} has more than one flat field", series.files[i]);
+          throwInput("flat field: {} has more than one flat field", series.files[i]);
         ofPhotograph_[i] = &image;
         isUsed = true;
       }
       if (!isUsed)
-        throwInput("--flat-field {}: no photograph was taken at f/{:g}", file,
-                   aperture.value_or(0));
+        throwInput("flat field {}: no photograph was taken at f/{:g}", file, aperture.value_or(0));
     }
   }
 
@@ -104,8 +105,8 @@ void checkShifts(std::span<const Exposure> exposures) {
     const Shift shift = findShift(order[i]->levels, order[i + 1]->levels);
     if (shift.isCertain())
       throwInput(
-          "{}: seems shifted by {},{} pixels against {}; align the photographs first, or give "
-          "--unaligned",
+          "{}: seems shifted by {},{} pixels against {}; align the photographs first, or "
+          "take them as they are (unaligned)",
           order[i + 1]->name, shift.dx, shift.dy, order[i]->name);
   }
 }
@@ -115,7 +116,7 @@ std::string defaultResponse(const PhotographSeries& series, const PhotographLeve
   if (photographs.transfer == Transfer::Other)
     throwInput(
         "{}: states that its levels are neither linear nor encoded as sRGB (gAMA, cICP); give "
-        "--response",
+        "the response",
         series.files.front());
   if (photographs.transfer) return photographs.transfer == Transfer::Srgb ? "srgb" : "linear";
   return photographs.bits == 8 ? "srgb" : "linear";
@@ -128,10 +129,10 @@ ResponseCurve responseOf(const PhotographSeries& series, const PhotographLevels&
   if (name == "linear") return ResponseCurve::linear();
   if (name == "srgb") return ResponseCurve::srgb();
   if (name != "solve" && !std::filesystem::exists(name))
-    throwInput("--response: `{}` is neither linear, srgb or solve nor a file", name);
+    throwInput("response: `{}` is neither linear, srgb or solve nor a file", name);
   if (name != "solve") return ResponseCurve::read(name);
   if (photographs.bits != 8)
-    throwInput("--response solve: {} has no 8-bit levels; a response is solved from these",
+    throwInput("response solve: {} has no 8-bit levels; a response is solved from these",
                series.files.front());
   return solveResponse(exposures, series.smoothness);
 }

@@ -49,8 +49,8 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
       const Image& first = result.levels.front();
       if (!resizes && (image.width != first.width || image.height != first.height))
         throwInput(
-            "{}: is {} x {}, but {} is {} x {}; photographs of a series have one size, or give "
-            "--resize for crops of a ball",
+            "{}: is {} x {}, but {} is {} x {}; photographs of a series have one size, or, "
+            "for crops of a ball, are resized",
             file, image.width, image.height, files.front(), first.width, first.height);
       if (bits != result.bits)
         throwInput("{}: has {}, but {} has {}; photographs of a series are of one kind", file,

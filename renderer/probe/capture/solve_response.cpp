@@ -73,7 +73,7 @@ std::vector<double> solveChannel(std::span<const Exposure> exposures, int channe
   const auto curve = equations.solve();
   if (pixels.weight() == 0 || !curve)
     throwInput(
-        "--response solve: no pixel is well exposed in two of the photographs in {}; give more "
+        "response solve: no pixel is well exposed in two of the photographs in {}; give more "
         "exposures in between, or the response",
         kChannels[channel]);
   return *curve;
@@ -89,7 +89,7 @@ ResponseCurve solveResponse(std::span<const Exposure> exposures, double smoothne
       table[size_t(level)][channel] = curve[size_t(level)];
       if (level > 0 && !(curve[size_t(level)] > curve[size_t(level) - 1]))
         throwInput(
-            "--response solve: the photographs fit no response: exposure in {} would not rise from "
+            "response solve: the photographs fit no response: exposure in {} would not rise from "
             "level {} to {}; are the exposures right, and the camera and the scene still?",
             kChannels[channel], level - 1, level);
     }

@@ -53,15 +53,15 @@ SunFromBall solveSun(const Image& clipped, const BallSamples& ball, const dvec3&
   }
   if (!(meanOf(fromTest).x > kLeastLit))
     throwInput(
-        "--direction: the sun at {:.3f} {:.3f} {:.3f} lights less than the rim of what --camera "
+        "direction: the sun at {:.3f} {:.3f} {:.3f} lights less than the rim of what the camera "
         "sees of the ball",
         direction.x, direction.y, direction.z);
 
   SunFromBall result{.sun = test, .alpha = meanOf(fromSun) / meanOf(fromTest)};
   if (!(std::min({result.alpha.x, result.alpha.y, result.alpha.z}) > 0))
     throwInput(
-        "--diffuse: the ball is darker than the probe alone lights it: {:.4g} {:.4g} {:.4g} of its "
-        "mean; do both have the same exposure, and is --paint right?",
+        "the diffuse ball is darker than the probe alone lights it: {:.4g} {:.4g} {:.4g} of its "
+        "mean; do both have the same exposure, and is the paint right?",
         (meanOf(fromSun) / meanOf(real)).x, (meanOf(fromSun) / meanOf(real)).y,
         (meanOf(fromSun) / meanOf(real)).z);
   result.sun.irradiance = kPiD * result.alpha;
@@ -143,7 +143,7 @@ ClippedSun findClippedSun(const Image& latLong, const Image* clipped, const std:
   const Image marks = marked(latLong, clipped);
   const std::vector<Region> regions = regionsOf(marks);
   if (regions.empty())
-    throwInput("{}: {}; give --direction", name,
+    throwInput("{}: {}; give the direction", name,
                clipped ? "its layer `clipped` marks no texel" : "is black");
   const auto bySize = [](const Region& a, const Region& b) { return a.solidAngle < b.solidAngle; };
   const Region& largest = *std::ranges::max_element(regions, bySize);
@@ -153,7 +153,8 @@ ClippedSun findClippedSun(const Image& latLong, const Image* clipped, const std:
   for (const Texel t : largest.texels)
     sum += texelDirection(size, t.x, t.y) * texelSolidAngle(t.y, size.width, size.height);
   if (!(glm::length(sum) > 0.1 * largest.solidAngle))
-    throwInput("{}: what is as bright as it can show surrounds the viewer; give --direction", name);
+    throwInput("{}: what is as bright as it can show surrounds the viewer; give the direction",
+               name);
   ClippedSun sun{glm::normalize(sum), 180.0 / size.height};
   double furthest = 0;  // half of the chord
   for (const Texel t : largest.texels)

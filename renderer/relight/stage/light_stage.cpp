@@ -18,7 +18,7 @@ void checkStageSize(const DirectionBasis& basis, int width, int height, std::str
   if (numbers > kMaxStageNumbers)
     throwInput(
         "{}: {} x {} pixels with {} elements are {} numbers; the limit is {}: take a smaller "
-        "--size or fewer --directions",
+        "size or fewer directions",
         location, width, height, basis.size(), numbers, kMaxStageNumbers);
 }
 

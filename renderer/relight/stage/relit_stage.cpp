@@ -20,7 +20,7 @@ RelightDomain parseDomain(const std::string& name, const DirectionBasis& basis) 
   using enum RelightDomain;
   const bool isSh = !basis.hasCells();
   const auto needs = [&](bool holds, const char* what) {
-    if (!holds) throwInput("--domain {}: needs {}; this stage has {}", name, what, basis.name());
+    if (!holds) throwInput("domain {}: needs {}; this stage has {}", name, what, basis.name());
   };
   if (name == "auto") return isSh ? Sh : Pixel;
   if (name == "pixel") {
@@ -42,7 +42,7 @@ RelightDomain parseDomain(const std::string& name, const DirectionBasis& basis) 
           "cube:N with a power of two");
     return Haar;
   }
-  throwInput("--domain: `{}` is unknown; {}", name,
+  throwInput("domain: `{}` is unknown; {}", name,
              didYouMean(name, {"auto", "pixel", "dct", "haar", "sh"}));
 }
 

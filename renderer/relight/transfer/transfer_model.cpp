@@ -12,7 +12,7 @@ namespace {
 LightBasis basisOf(const CustomData& data, const std::string& path) {
   const auto name = data.texts.find("basis");
   if (name == data.texts.end() || data.attributes.empty())
-    throwInput("{}: has no transfer ({}); `basis MODEL --at vertices` writes it", path,
+    throwInput("{}: has no transfer ({}); `basis` at vertices writes it", path,
                TransferFile::nameOf(0));
   return {name->second, path + ": extras.chromeball.basis"};
 }

@@ -188,7 +188,7 @@ void checkFileName(const std::string& name) {
 }
 
 void checkInside(const fs::path& folder, const std::string& name) {
-  constexpr const char* kRemedy = "--allow-external permits that";
+  constexpr const char* kRemedy = "permission (allow-external) lifts that";
   const fs::path path(name);
   if (path.is_absolute()) failUri("is an absolute path; {}", kRemedy);
   std::error_code error;

@@ -128,8 +128,8 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   scene.isAnimated = isAnimated;
   if (!choice.animation && !file.model.animations.empty())
     scene.notes.push_back(
-        fmt::format("{}: shown in its rest pose; --animation NAME --animation-time SECONDS selects "
-                    "an animation: {}",
+        fmt::format("{}: shown in its rest pose; a name and a time select one of its animations: "
+                    "{}",
                     path, animationNames(file)));
   if (warn) std::ranges::for_each(file.warnings(), warn);
   return scene;
