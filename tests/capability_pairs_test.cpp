@@ -140,7 +140,7 @@ Render plain(bool hasObjects = true) {
   d.camera.placed =
       CameraEntry{.position = {0, 1.5, 4}, .target = {0, 0.5, 0}, .up = {0, 1, 0}, .lens = {}};
   d.size = ImageSize{24, 16};
-  d.settings.samples = 64;
+  d.settings.samples = 24;
   d.settings.maxDepth = 5;
   d.settings.adaptive = false;
   d.settings.guiding = Guiding::Off;
@@ -186,7 +186,7 @@ Image interrupted(const D& description) {
     const LoadedScene loaded = loadScene(d);
     const PreparedScene prepared = prepareScene(loaded);
     std::atomic<bool> stop = false;
-    JobControl control(loaded, [&](const RenderState& state) { stop = state.done < 40; });
+    JobControl control(loaded, [&](const RenderState& state) { stop = state.done < 16; });
     JobResult result = renderJob(loaded, prepared, nothing, stop, &control);
     if (!result.render.interrupted || round > 20) return result.color();
     d.run.resumes = std::filesystem::exists(*d.run.checkpoint);
@@ -252,7 +252,7 @@ TEST(SlowCapabilityPairs, AllowedPairsRenderThePictureOfThePlainPath) {
   constexpr double kSignificance = 0.01;     // of all tests together
   const std::vector<Image> expected = repeats(plain(), 24, 1000);
   Render empty = plain(false);
-  empty.description.settings.samples = 1u << 14;
+  empty.description.settings.samples = 1u << 13;
   const std::vector<Way> all = ways(rendered(empty));
   const double light = meanOfAll(expected);
   uint64_t seed = 1;

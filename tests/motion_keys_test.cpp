@@ -109,10 +109,10 @@ TEST(MotionKeys, WarnsOfLampsAndCamerasThatMissTheirWay) {
   const LoadedScene coarse = loaded(path, openShutterFor(1, 1));
   EXPECT_TRUE(says(coarse,
                    "the lamps move by up to 1.4 m while the shutter is open, and 1 step "
-                   "misses their way by up to 1 m; --shutter-steps 4"));
+                   "misses their way by up to 1 m; 4 steps of the shutter"));
   EXPECT_TRUE(says(coarse,
                    "the camera moves by up to 1.4 m while the shutter is open, and 1 step "
-                   "misses its way by up to 1 m; --shutter-steps 4"));
+                   "misses its way by up to 1 m; 4 steps of the shutter"));
   const LoadedScene fine = loaded(path, openShutterFor(1, 64));
   EXPECT_FALSE(says(fine, "the lamps"));
   EXPECT_FALSE(says(fine, "the camera"));
