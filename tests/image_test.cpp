@@ -236,7 +236,8 @@ TEST(Image, LayersAndMetadata) {
   EXPECT_EQ(std::get<int>(file.metadata.at("seed")), 7);
   EXPECT_EQ(std::get<float>(file.metadata.at("seconds")), 1.5f);
   EXPECT_EQ(std::get<double>(file.metadata.at("shutter")), 0.7);
-  for (const auto& [name, number] : {std::pair("seed", 7.0), {"seconds", 1.5}, {"shutter", 0.7}})
+  for (const auto& [name, number] :
+       {std::pair("seed", 7.0), std::pair("seconds", 1.5), std::pair("shutter", 0.7)})
     EXPECT_EQ(metadataNumber(file.metadata, name), number);
   EXPECT_EQ(metadataNumber(file.metadata, "strategy"), std::nullopt);
   EXPECT_EQ(metadataNumber(file.metadata, "none"), std::nullopt);

@@ -259,16 +259,19 @@ void checkCapabilities(const RenderDescription& description) {
 
 std::span<const Dependence> dependences() { return kDependences; }
 
+std::string namedOrigin(const RenderDescription& description, std::string_view setting) {
+  const std::string origin = description.origins.of(setting);
+  const bool isName = origin.starts_with("--") || origin == setting;
+  return isName ? origin : fmt::format("{}: `{}`", origin, setting);
+}
+
 std::vector<std::string> idleSettings(const RenderDescription& description,
                                       const SceneContents& contents) {
   std::vector<std::string> lines;
   for (const Dependence& d : kDependences) {
     if (!description.origins.has(d.setting) || d.isMet(description, contents)) continue;
-    const std::string origin = description.origins.of(d.setting);
-    const bool isName = origin.starts_with("--") || origin == d.setting;
-    lines.push_back(fmt::format("{} has no effect without {}",
-                                isName ? origin : fmt::format("{}: `{}`", origin, d.setting),
-                                d.needs));
+    lines.push_back(
+        fmt::format("{} has no effect without {}", namedOrigin(description, d.setting), d.needs));
   }
   return lines;
 }

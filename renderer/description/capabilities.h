@@ -52,6 +52,9 @@ struct Dependence {
 
 std::span<const Dependence> dependences();
 
+// Where a given setting is from, with its name: "--shutter", "FILE:LINE: `camera.shutter`".
+std::string namedOrigin(const RenderDescription& description, std::string_view setting);
+
 // "--probe-rotation has no effect without a probe", or "FILE:LINE: `probe.rotation` ...", for each
 // setting that was given and has none.
 std::vector<std::string> idleSettings(const RenderDescription& description,
