@@ -112,6 +112,8 @@ TEST_F(CommandIntegrators, CacheIrradianceForOtherCamerasOfASceneFile) {
     const CommandResult result = runCommand(command(rest));
     EXPECT_EQ(result.status, 0) << result.error;
   };
+  renders("");
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "records"));
   const std::string camera = "[camera]\nlook_at = [0, 0, 0]\nfov = 40\nposition = ";
   renders(camera + "[3, 2, 4]\n");
   renders(camera + "[3, 3, 4]\n");

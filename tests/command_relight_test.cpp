@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball basis and chromeball relight as commands.
-#include <OpenEXR/ImfChromaticitiesAttribute.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
-#include <OpenEXR/ImfOutputFile.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,16 +17,6 @@ namespace chromeball::command_relight_test {
 namespace {
 
 using Strings = std::vector<std::string>;
-
-// A copy of an .exr that states the primaries of Rec. 2020.
-void withPrimaries(const std::string& from, const std::string& to) {
-  Imf::InputFile in(from.c_str());
-  Imf::Header header = in.header();
-  header.insert("chromaticities",
-                Imf::ChromaticitiesAttribute(Imf::Chromaticities(
-                    {0.708f, 0.292f}, {0.17f, 0.797f}, {0.131f, 0.046f}, {0.3127f, 0.329f})));
-  Imf::OutputFile(to.c_str(), header).copyPixels(in);
-}
 
 class CommandRelight : public testing::Test {
  protected:
@@ -115,17 +101,6 @@ TEST_F(CommandRelight, StagesNameSettingsThatTheyDoNotHeed) {
       runCommand({"basis", folder_ / "s.toml", "--directions", "sh:1", "-o", folder_ / "s.exr"})
           .out.find(" 256 samples"),
       std::string::npos);
-}
-
-TEST_F(CommandRelight, TellsThatColoursOfAStageAreConverted) {
-  const std::string path = basis("sh:1");
-  EXPECT_EQ(relight(path, {}).error.find("Rec. 709"), std::string::npos);
-  withPrimaries(path, folder_ / "wide.exr");
-  EXPECT_NE(
-      relight(folder_ / "wide.exr", {})
-          .error.find("wide.exr: its colour is converted to Rec. 709 from red (0.708, 0.292)"),
-      std::string::npos);
-  EXPECT_EQ(relight(folder_ / "wide.exr", {"--quiet"}).error.find("Rec. 709"), std::string::npos);
 }
 
 TEST_F(CommandRelight, DomainsAgreeAndReportWhatTheyLeaveOut) {

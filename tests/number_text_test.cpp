@@ -41,7 +41,7 @@ TEST(NumberText, InListsAndTables) {
   const auto points = readObservedPoints(folder / "points.csv");
   ASSERT_EQ(points.size(), 1u);
   EXPECT_EQ(points[0].pixel, glm::dvec2(286.5, 296.1));
-  std::ofstream(folder / "photographs.csv") << "a.exr,+0,0,+1\nb.exr,+90,-10\n";
+  std::ofstream(folder / "photographs.csv") << "a.exr,+0,0,+1\nb.exr,+.6,-0.8,0\n";
   EXPECT_EQ(readPhotographs(folder / "photographs.csv").size(), 2u);
 }
 
