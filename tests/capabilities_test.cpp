@@ -139,6 +139,30 @@ TEST(Capabilities, EveryConflictIsFound) {
   EXPECT_EQ(used.size(), kBring.size()) << "a feature is in no row";
 }
 
+// Every row is told where its setting was given without what it needs, and only there.
+TEST(Capabilities, EverySettingInVainIsNamed) {
+  D open = plain();
+  open.camera.shutter.emplace();
+  D inVain = plain();
+  inVain.probe.file.reset();
+  inVain.straightGlassShadows = true;
+  inVain.singleSided = SingleSided::Off;
+  const SceneContents nothing, all{true, true, true, true, true, true};
+  for (const Dependence& d : dependences()) {
+    const std::string name(d.setting);
+    for (D* description : {&open, &inVain}) {
+      EXPECT_EQ(idleSettings(*description, nothing), std::vector<std::string>{}) << name;
+      description->origins.set(name, "scene.toml:7");
+    }
+    EXPECT_EQ(idleSettings(open, all), std::vector<std::string>{}) << name;
+    const D& d2 = name == "camera.shutter" ? open : inVain;
+    EXPECT_EQ(idleSettings(d2, nothing),
+              std::vector<std::string>{
+                  fmt::format("scene.toml:7: `{}` has no effect without {}", name, d.needs)});
+    for (D* description : {&open, &inVain}) description->origins = {};
+  }
+}
+
 // A row says a thing once: no two rows have the same features, in either order.
 TEST(Capabilities, NoConflictIsThereTwice) {
   std::set<std::set<std::string_view>> pairs;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 
 #include "base/json.h"
 #include "browser.h"
@@ -67,6 +68,19 @@ TEST_F(CommandBake, IrradianceLightmapIsShownWithoutLight) {
   const Image light = readImage(folder_ / "a.exr");
   EXPECT_EQ(light.width, 32);
   EXPECT_GT(light.rgb(16, 16).y, 0.5f);
+}
+
+TEST_F(CommandBake, NamesSettingsThatItDoesNotHeed) {
+  std::ofstream(folder_ / "s.toml")
+      << "model = 'plate.gltf'\n[probe]\nfile = 'probe.exr'\n[render]\nnoise = 3\n"
+         "integrator = 'direct'\nao_distance = 0.5\nsize = [8, 6]\n[output]\naovs = ['ao']\n";
+  const CommandResult result = runCommand({"bake", folder_ / "s.toml", "--to", "vertices",
+                                           "--samples", "4", "--quiet", "-o", folder_ / "a.glb"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_TRUE(result.error.ends_with(
+      "s.toml:5: render.noise, render.integrator, render.ao_distance, output.aovs have no effect "
+      "here; `chromeball render` heeds them\n"))
+      << result.error;
 }
 
 TEST_F(CommandBake, OtherOutputs) {

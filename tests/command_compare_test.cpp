@@ -62,6 +62,20 @@ std::vector<std::string> with(std::vector<std::string> arguments,
   return arguments;
 }
 
+// What a comparison does not take from the scene file, and what it varies anyway.
+TEST_F(SlowCommandCompare, NamesSettingsThatItDoesNotHeed) {
+  std::ofstream(folder_ / "s.toml")
+      << "model = 'plate.gltf'\n[probe]\nfile = 'probe.exr'\n[lighting]\nstrategy = 'uniform'\n"
+         "[render]\nsamples = 3\nnoise = 3\nintegrator = 'direct'\nmax_depth = 2\ndenoise = true\n";
+  const CommandResult result =
+      runCommand({"compare", folder_ / "s.toml", "--size", "8x8", "-o", dir(), "--quiet",
+                  "--strategies", "bsdf", "--samples", "1", "--reference-samples", "64"});
+  EXPECT_EQ(result.status, 0) << result.error;
+  EXPECT_NE(result.error.find("s.toml:11: render.denoise, render.integrator have no effect here"),
+            std::string::npos)
+      << result.error;
+}
+
 TEST_F(SlowCommandCompare, writesAllResultsAndContinues) {
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);
   const json first = results();

@@ -98,6 +98,31 @@ TEST_F(CommandIntegrators, HeedTheAngleOfSuns) {
   EXPECT_NE(findColor(render(suns))->texels, findColor(render(wide))->texels);
 }
 
+// The records do not depend on the view, nor on where it is said: in the scene file as well.
+TEST_F(CommandIntegrators, CacheIrradianceForOtherCamerasOfASceneFile) {
+  const auto command = [&](const std::string& rest) {
+    std::ofstream(folder_ / "scene.toml") << "model = 'plate.gltf'\n[probe]\nfile = 'probe.exr'\n"
+                                          << "[render]\nsize = [16, 16]\nsamples = 4\n"
+                                          << "irradiance_cache = 0.3\n"
+                                          << rest;
+    return Strings{"render", folder_ / "scene.toml", "--quiet", "--cache", folder_ / "records",
+                   "-o",     folder_ / "o.exr"};
+  };
+  const auto renders = [&](const std::string& rest) {
+    const CommandResult result = runCommand(command(rest));
+    EXPECT_EQ(result.status, 0) << result.error;
+  };
+  renders("");
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "records"));
+  const std::string camera = "[camera]\nlook_at = [0, 0, 0]\nfov = 40\nposition = ";
+  renders(camera + "[3, 2, 4]\n");
+  renders(camera + "[3, 3, 4]\n");
+  renders("# a comment\n" + camera + "[3, 3, 4]\n[output]\naovs = ['albedo']\n");
+  expectError(command("max_depth = 3\n"), "is the cache of another scene: `max-depth`");
+  expectError(command("[[light]]\ntype = 'sun'\ndirection = [1, 1, 1]\nirradiance = 2\n"),
+              "is the cache of another scene: `scene-lights`");
+}
+
 TEST_F(CommandIntegrators, CacheIrradiance) {
   const std::string cache = folder_ / "records";
   const Strings cached{"--samples", "4", "--irradiance-cache", "0.3", "--cache", cache};

@@ -113,7 +113,10 @@ TEST(SlowMerge, OfShardsIsTheWholeImage) {
   EXPECT_EQ(merged.channels, single.channels);
   for (const char* name : {"samples", "rays", "size", "strategy", "max-depth"})
     EXPECT_EQ(merged.metadata.at(name), single.metadata.at(name)) << name;
-  EXPECT_EQ(merged.metadata.count("shard"), 0u);
+  for (const char* name : {"shard", "samplesOfAll"}) EXPECT_EQ(merged.metadata.count(name), 0u);
+  for (const std::string& part : {a, b, c})
+    EXPECT_EQ(metadataNumber(readImageFile(part).metadata, "samplesOfAll"), 30) << part;
+  EXPECT_EQ(single.metadata.count("samplesOfAll"), 0u);
   EXPECT_NEAR(
       std::get<float>(merged.metadata.at("noise")) / std::get<float>(single.metadata.at("noise")),
       1, 1e-4);

@@ -65,6 +65,44 @@ class CommandRelight : public testing::Test {
   TemporaryFolder folder_;
 };
 
+// Settings of a scene file that a light stage does not have are named in one line; those that it
+// has are heeded.
+TEST_F(CommandRelight, StagesNameSettingsThatTheyDoNotHeed) {
+  const auto stage = [&](const std::string& settings, const Strings& more = {}) {
+    std::ofstream(folder_ / "s.toml") << "model = 'm.gltf'\n[render]\nsize = [16, 12]\n"
+                                      << "samples = 4\n"
+                                      << settings;
+    Strings words{"basis", folder_ / "s.toml", "--directions", "sh:1", "-o", folder_ / "s.exr"};
+    if (!more.empty()) words = {"basis", folder_ / "s.toml", "--at", "vertices", "-o", more[0]};
+    words.emplace_back("--quiet");
+    const CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0) << result.error;
+    return result.error;
+  };
+  const std::string all =
+      "max_depth = 2\nintegrator = 'direct'\nregularize = true\ndenoise = true\n"
+      "irradiance_cache = 0.2\nnoise = 3\n";
+  EXPECT_TRUE(stage(all).ends_with(
+      "s.toml:10: render.noise, render.regularize, render.denoise, render.integrator, "
+      "render.irradiance_cache have no effect here; `chromeball render` heeds them\n"))
+      << stage(all);
+  EXPECT_TRUE(stage("max_diffuse_depth = 1\n[camera]\nshutter = 0.5\n")
+                  .ends_with("s.toml:7: camera.shutter has no effect here; `chromeball render` "
+                             "heeds it\n"));
+  EXPECT_EQ(stage("integrator = 'path'\nregularize = false\nguide = 'off'\nsingle_sided = 'off'\n"
+                  "[lighting]\nmis = 'off'\n[output]\nfile = 'a.exr'\n"),
+            "");
+  EXPECT_TRUE(stage("max_diffuse_depth = 1\n", {folder_ / "v.glb"})
+                  .ends_with("render.max_diffuse_depth has no effect here; `chromeball render` "
+                             "heeds it\n"));
+  // Without `samples`, a limit of noise does not mean two thousand million.
+  std::ofstream(folder_ / "s.toml") << "model = 'm.gltf'\n[render]\nsize = [4, 3]\nnoise = 3\n";
+  EXPECT_NE(
+      runCommand({"basis", folder_ / "s.toml", "--directions", "sh:1", "-o", folder_ / "s.exr"})
+          .out.find(" 256 samples"),
+      std::string::npos);
+}
+
 TEST_F(CommandRelight, DomainsAgreeAndReportWhatTheyLeaveOut) {
   const std::string boxes = basis("lat-long:16x8");
   EXPECT_NE(relight(boxes, {}).out.find("relit 16 x 12 pixels from 128 elements (lat-long:16x8)"),

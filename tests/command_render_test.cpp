@@ -519,17 +519,15 @@ Words optionsIn(const ImageFile& file) {
   const auto limit = file.metadata.find("noise-limit");
   Words options;
   if (limit != file.metadata.end())
-    options = {"--noise", fmt::format("{}", std::get<float>(limit->second))};
+    options = {"--noise", fmt::format("{}", *metadataNumber(file.metadata, "noise-limit"))};
   for (const auto& [name, value] : file.metadata) {
     // `noise` and, with a noise limit, `samples` are results, not options.
     if (help.find("--" + name + " ") == std::string::npos || name == "noise" ||
         (name == "samples" && !options.empty() && options[0] == "--noise"))
       continue;
     std::string text;
-    if (const auto* number = std::get_if<float>(&value))
+    if (const auto number = metadataNumber(file.metadata, name))
       text = fmt::format("{}", *number);
-    else if (const auto* count = std::get_if<int>(&value))
-      text = fmt::format("{}", *count);
     else
       text = std::get<std::string>(value);
     options.push_back("--" + name);
@@ -599,6 +597,64 @@ TEST(SlowCommandRender, TheHeaderReproducesTheImage) {
     ASSERT_EQ(std::system((command + " --quiet > /dev/null").c_str()), 0) << command;
     EXPECT_EQ(scene.image("a.exr").image.texels, first.image.texels) << command;
   }
+}
+
+// As they were given, also where a float does not hold them.
+TEST(CommandRender, NumbersOfTheHeaderAreExact) {
+  const RenderScene scene;
+  const std::map<std::string, double> given = {
+      {"shutter", 0.7},    {"orbit-step", 5.1}, {"fps", 23.976},         {"probe-scale", 1 / 3.0},
+      {"ao-distance", .3}, {"clamp", 1.1},      {"probe-rotation", 33.1}};
+  Words options{"--probe", scene.gradient, "--size", "8x6", "--samples",
+                "2",       "--aov",        "ao",     "-o",  scene.out / "a.exr"};
+  for (const auto& [name, number] : given)
+    options.insert(options.end(), {"--" + name, fmt::format("{}", number)});
+  scene.render(options);
+  const Metadata metadata = scene.image("a.exr").metadata;
+  for (const auto& [name, number] : given)
+    EXPECT_EQ(metadataNumber(metadata, name), number) << name;
+  for (const double noise : {7.0, 33.3, 57.29577951308232}) {
+    scene.render({"--probe", scene.gradient, "--size", "4x3", "--noise", fmt::format("{}", noise),
+                  "-o", scene.out / "b.exr"});
+    const auto stated = metadataNumber(scene.image("b.exr").metadata, "noise-limit");
+    EXPECT_EQ(stated.value() / 100, noise / 100);
+  }
+}
+
+// A setting that was given in vain is named once, from wherever it is.
+TEST(CommandRender, NamesSettingsWithoutEffect) {
+  const RenderScene scene;
+  const auto errorOf = [&](const std::string& file, const Words& more) {
+    Words options{"--size", "4x3", "--samples", "2", "--quiet", "-o", scene.out / "a.exr"};
+    options.insert(options.end(), more.begin(), more.end());
+    return scene.renderScene(file, options).error;
+  };
+  const std::string lit = scene.folder() + "/lit.toml";
+  std::ofstream(lit) << "model = 'model.gltf'\n[probe]\nscale = 2.5\n[lighting]\nlights = 0.5\n";
+  const std::string error = errorOf(lit, {"--probe-rotation", "30", "--probe-mapping", "lat-long"});
+  for (const char* line :
+       {"lit.toml:3: `probe.scale` has no effect without a probe\n",
+        "lit.toml:5: `lighting.lights` has no effect without punctual lights of the models\n",
+        "--probe-rotation has no effect without a probe\n",
+        "--probe-mapping has no effect without a probe's file\n"})
+    EXPECT_NE(error.find(line), std::string::npos) << line << error;
+  const auto expectOne = [&](const Words& options, const std::string& needs) {
+    Words all{"--probe", scene.gradient};
+    all.insert(all.end(), options.begin(), options.end());
+    EXPECT_EQ(errorOf(scene.model, all),
+              needs.empty() ? ""
+                            : fmt::format("chromeball: warning: {} has no effect without {}\n",
+                                          options[0], needs));
+  };
+  expectOne({"--shutter-steps", "3"}, "an open shutter");
+  expectOne({"--shutter", "0.5"}, "anything that moves");
+  expectOne({"--shutter", "0.5", "--shutter-steps", "3", "--orbit-step", "1"}, "");
+  expectOne({"--lights", "off"}, "punctual lights of the models");
+  expectOne({"--light-units", "radiometric"}, "punctual lights of the models");
+  expectOne({"--glass-shadows", "straight"}, "smooth bodies of glass");
+  expectOne({"--max-transmission-depth", "3"}, "bodies of glass");
+  expectOne({"--probe-rotation", "30", "--probe-scale", "2", "--probe-mapping", "lat-long"}, "");
+  expectOne({"--single-sided", "light"}, "");
 }
 
 TEST(CommandRender, TheHeaderHasTheCameraMatrices) {

@@ -391,8 +391,13 @@ TEST(ExrFiles, LightStagesAreConvertedOrRefused) {
   };
   write({}, {});
   EXPECT_EQ(StageReader(path).read(1, 2).elements.rgb(0, 0), color);
+  EXPECT_TRUE(StageReader(path).messages().empty());
   write({}, kAcesCg);
-  const LightStage stage = StageReader(path).read(1, 2);
+  StageReader wide(path);
+  const LightStage stage = wide.read(1, 2);
+  ASSERT_EQ(wide.messages().size(), 1u);
+  EXPECT_TRUE(wide.messages()[0].text.starts_with(
+      path + ": its colour is converted to Rec. 709 from red (0.713, 0.293)"));
   expectRgb(stage.elements.rgb(7, 1), converted);
   expectRgb(stage.own.rgb(7, 1), converted);
   write({{{2, 0}, {7, 3}}, {{0, 0}, {7, 3}}}, {});

@@ -267,11 +267,13 @@ TEST(FindCircle, FindsNoneWhereThereIsNone) {
   EXPECT_FALSE(findCircle(ramp));
 }
 
-// Hexagons and octagons, which are circles to 7 and 4% of their radius.
+// Hexagons, octagons and dodecagons, which are circles to 7, 4 and 2% of their radius.
 TEST(SlowFindCircle, RegularPolygonsAreNoBalls) {
-  constexpr int kWidth = 320, kHeight = 240, kFine = 4;
-  for (const int corners : {6, 8})
-    for (const double radius : {75.0, 100.0}) {
+  constexpr int kFine = 4;
+  for (const int corners : {6, 8, 12})
+    for (const double radius : {75.0, 100.0, corners == 12 ? 200.0 : 75.0}) {
+      const int width = std::max(320, int(2.6 * radius));
+      const int height = std::max(240, int(2.4 * radius));
       const auto isInside = [&](const dvec2& p) {
         for (int i = 0; i < corners; ++i) {
           const double angle = 2 * kPiD * (i + 0.3) / corners;
@@ -281,13 +283,13 @@ TEST(SlowFindCircle, RegularPolygonsAreNoBalls) {
         }
         return true;
       };
-      Image image(kWidth, kHeight, 3);
-      for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
+      Image image(width, height, 3);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
           float sum = 0;
           for (int i = 0; i < kFine * kFine; ++i) {
-            const dvec2 p(x - 160.3 + (i % kFine + 0.5) / kFine,
-                          y - 119.6 + (i / kFine + 0.5) / kFine);
+            const dvec2 p(x - 0.5 * width - 0.3 + (i % kFine + 0.5) / kFine,
+                          y - 0.5 * height + 0.4 + (i / kFine + 0.5) / kFine);
             sum += isInside(p) ? 0.3f + 0.2f * float(std::sin(p.x / 9) * std::sin(p.y / 7)) : 0.8f;
           }
           image.setRgb(x, y, Rgb(sum / (kFine * kFine)));

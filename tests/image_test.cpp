@@ -218,12 +218,13 @@ TEST(Image, LayersAndMetadata) {
   const std::string path = folder / "layers.exr";
   const Image color = fullRangeImage(4, 3, 4), albedo = fullRangeImage(4, 3, 3);
   const Image depth = fullRangeImage(4, 3, 1), samples = fullRangeImage(4, 3, 1);
-  writeImage(path, OutputImage{{{"", "RGBA", color},
-                                {"normal", "XYZ", albedo},
-                                {"variance", "RGB", albedo},
-                                {"depth", "Z", depth},
-                                {"samples", "", samples}},
-                               {{"strategy", "bsdf"}, {"seed", 7}, {"seconds", 1.5f}}});
+  writeImage(path,
+             OutputImage{{{"", "RGBA", color},
+                          {"normal", "XYZ", albedo},
+                          {"variance", "RGB", albedo},
+                          {"depth", "Z", depth},
+                          {"samples", "", samples}},
+                         {{"strategy", "bsdf"}, {"seed", 7}, {"seconds", 1.5f}, {"shutter", 0.7}}});
   const ImageFile file = readImageFile(path);
   EXPECT_EQ(findLayer(file, "normal")->texels, albedo.texels);
   EXPECT_EQ(findLayer(file, "variance")->texels, albedo.texels);
@@ -234,6 +235,12 @@ TEST(Image, LayersAndMetadata) {
   EXPECT_EQ(std::get<std::string>(file.metadata.at("strategy")), "bsdf");
   EXPECT_EQ(std::get<int>(file.metadata.at("seed")), 7);
   EXPECT_EQ(std::get<float>(file.metadata.at("seconds")), 1.5f);
+  EXPECT_EQ(std::get<double>(file.metadata.at("shutter")), 0.7);
+  for (const auto& [name, number] :
+       {std::pair("seed", 7.0), std::pair("seconds", 1.5), std::pair("shutter", 0.7)})
+    EXPECT_EQ(metadataNumber(file.metadata, name), number);
+  EXPECT_EQ(metadataNumber(file.metadata, "strategy"), std::nullopt);
+  EXPECT_EQ(metadataNumber(file.metadata, "none"), std::nullopt);
   std::vector<std::string> names = layerNames(file);
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"depth", "normal", "samples", "variance"}));

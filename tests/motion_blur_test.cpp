@@ -489,6 +489,28 @@ TEST(MotionBlur, RefusesWhatHasNoMeaning) {
   refuses({"--frames", "0:1", "--probe-sequence", out / "p.#.exr", "--probe", "q.exr"}, "--probe");
 }
 
+// All probes that are needed, before the first frame; those of finished frames are not.
+TEST(MotionBlur, MissingProbesOfFramesAreFoundAtOnce) {
+  const MovingSquare square(Mover::Camera);
+  const TemporaryFolder out;
+  const auto frames = [&](const char* range, const Words& more = {}) {
+    Words options{"--frames", range, "--probe-sequence", out / "probe.#.exr"};
+    options.insert(options.end(), more.begin(), more.end());
+    return words(square.path(), options, out / "a.#.exr");
+  };
+  for (const int i : {0, 1, 3}) {
+    const std::string path = out / fmt::format("probe.{}.exr", i);
+    writeImage(path, constantProbe({8, 4}, Rgb(1)));
+  }
+  expectError(frames("0:3"), "probe.2.exr: no such file");
+  expectError(frames("0:5"), "probe.2.exr: no such file; 2 more of the frames' probes are missing");
+  EXPECT_FALSE(std::filesystem::exists(out / "a.0.exr"));
+  EXPECT_EQ(runCommand(frames("0:1")).status, 0);
+  std::filesystem::remove(out / "probe.0.exr");
+  EXPECT_EQ(runCommand(frames("0:1")).status, 0);
+  expectError(frames("0:1", {"--overwrite"}), "probe.0.exr: no such file");
+}
+
 TEST(SlowMotionBlur, EveryFrameHasItsProbe) {
   const MovingSquare square(Mover::Camera);
   const TemporaryFolder out;

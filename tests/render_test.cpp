@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "all_tables.h"
 #include "base/parallel.h"
+#include "transport/world.h"
+#include "lighting/strategy.h"
 #include "measure/statistics.h"
 #include "probe/mapping.h"
 #include "probe/sky.h"
@@ -190,6 +193,24 @@ TEST(Render, stopsAtTheNoiseLimit) {
   EXPECT_LE(r.film.noise().upper, 0.002);
   EXPECT_LT(r.samples, 1u << 16);
   EXPECT_GE(r.samples, 16u);
+}
+
+// An estimate of what a limit leaves to do is too large where the render ends before.
+TEST(Render, ProgressEndsAtOne) {
+  const Scene scene = plane(lambert(Rgb(0.7f)));
+  const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.2, 0.6, 0.3}));
+  const World world(scene, {}, allTables());
+  const auto lighting = makeStrategy("uniform", probe, Mis::Balance, "test");
+  const std::atomic<bool> stop = false;
+  for (const double limit : {0.05, 0.03, 0.02, 0.013, 0.01}) {
+    RenderSettings settings = smallRender(16, 16, 1 << 20, 3);
+    settings.noiseLimit = limit;
+    double last = 0;
+    render(
+        world, topCamera(4, 50), *lighting, settings, [&](double fraction) { last = fraction; },
+        stop);
+    EXPECT_EQ(last, 1) << limit;
+  }
 }
 
 // A blended plane transmits 1 - alpha; below the cutoff, a mask transmits all light.

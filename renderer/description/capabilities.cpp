@@ -209,6 +209,34 @@ constexpr std::array kConflicts = {
              "it prints"},
 };
 
+bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
+bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
+
+constexpr std::array kDependences = {
+    Dependence{"camera.shutter", "anything that moves",  // at the times of other frames it may
+               [](const D& d, const SceneContents& c) {
+                 return !d.camera.shutter || c.moves || d.run.isOfFrames;
+               }},
+    Dependence{"camera.shutter_steps", "an open shutter",
+               [](const D& d, const SceneContents&) { return d.camera.shutter.has_value(); }},
+    Dependence{"probe.mapping", "a probe's file",
+               [](const D& d, const SceneContents&) { return d.probe.file.has_value(); }},
+    Dependence{"probe.rotation", "a probe", hasProbe},
+    Dependence{"probe.scale", "a probe", hasProbe},
+    Dependence{"lighting.lights", "punctual lights of the models", hasModelLights},
+    Dependence{"lighting.light_units", "punctual lights of the models", hasModelLights},
+    Dependence{"render.glass_shadows", "smooth bodies of glass",
+               [](const D& d, const SceneContents& c) {
+                 return !d.straightGlassShadows || c.hasStraightGlass;
+               }},
+    Dependence{"render.max_transmission_depth", "bodies of glass",
+               [](const D&, const SceneContents& c) { return c.hasBodies; }},
+    Dependence{"render.single_sided", "single-sided surfaces",
+               [](const D& d, const SceneContents& c) {
+                 return d.singleSided == SingleSided::Camera || c.hidesBacks;
+               }},
+};
+
 }  // namespace
 
 std::span<const Conflict> conflicts() { return kConflicts; }
@@ -227,6 +255,25 @@ void checkCapabilities(const RenderDescription& description) {
       fmt::format("{}: {}", description.origins.of(found->feature.setting), found->why);
   if (found->with.setting.empty()) throw InputError(text);
   throw InputError(text, Remedy{std::string(found->with.setting), {}});
+}
+
+std::span<const Dependence> dependences() { return kDependences; }
+
+std::string namedOrigin(const RenderDescription& description, std::string_view setting) {
+  const std::string origin = description.origins.of(setting);
+  const bool isName = origin.starts_with("--") || origin == setting;
+  return isName ? origin : fmt::format("{}: `{}`", origin, setting);
+}
+
+std::vector<std::string> idleSettings(const RenderDescription& description,
+                                      const SceneContents& contents) {
+  std::vector<std::string> lines;
+  for (const Dependence& d : kDependences) {
+    if (!description.origins.has(d.setting) || d.isMet(description, contents)) continue;
+    lines.push_back(
+        fmt::format("{} has no effect without {}", namedOrigin(description, d.setting), d.needs));
+  }
+  return lines;
 }
 
 }  // namespace chromeball

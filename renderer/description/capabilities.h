@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What cannot be combined: one table, from which checks, messages and documentation are made.
+// What cannot be combined, and what has no effect alone: two tables, from which checks, messages
+// and documentation are made.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "description/render_description.h"
 
@@ -31,5 +33,31 @@ const Conflict* conflictIn(const RenderDescription& description);
 
 // Throws InputError "SETTING'S ORIGIN: WHY" for the first one.
 void checkCapabilities(const RenderDescription& description);
+
+// What a description's files contain, as far as settings depend on it.
+struct SceneContents {
+  bool hasProbe = false;        // also from memory, or the models' own environment
+  bool hasModelLights = false;  // punctual lights of the models
+  bool hasBodies = false, hasStraightGlass = false;  // of glass; with straight shadows
+  bool hidesBacks = false;                           // of single-sided surfaces, unless told not to
+  bool moves = false;                                // while the shutter is open
+};
+
+// A setting that has an effect only where there is something else.
+struct Dependence {
+  std::string_view setting;  // its name in the table of settings
+  std::string_view needs;    // "a probe"
+  bool (*isMet)(const RenderDescription&, const SceneContents&);
+};
+
+std::span<const Dependence> dependences();
+
+// Where a given setting is from, with its name: "--shutter", "FILE:LINE: `camera.shutter`".
+std::string namedOrigin(const RenderDescription& description, std::string_view setting);
+
+// "--probe-rotation has no effect without a probe", or "FILE:LINE: `probe.rotation` ...", for each
+// setting that was given and has none.
+std::vector<std::string> idleSettings(const RenderDescription& description,
+                                      const SceneContents& contents);
 
 }  // namespace chromeball

@@ -150,6 +150,15 @@ Json limitOf(int depth) { return depth < INT_MAX ? Json(depth) : Json(); }
 Json numberOf(float x) { return std::stod(fmt::format("{}", x)); }
 Json numberOf(const std::optional<float>& x) { return x ? numberOf(*x) : Json(); }
 Json numberOf(const std::optional<double>& x) { return x ? Json(*x) : Json(); }
+// The shortest number near `guess` of which `map` makes exactly `image`, as it has of what a user
+// gave; `guess` where rounding leaves none.
+template <class Map>
+Json inverseOf(const Map& map, double image, double guess) {
+  for (const double number : {std::stod(fmt::format("{:.15g}", guess)), guess,
+                              std::nextafter(guess, -INFINITY), std::nextafter(guess, INFINITY)})
+    if (map(number) == image) return number;
+  return guess;
+}
 Json nameAt(int index, std::initializer_list<const char*> names) { return names.begin()[index]; }
 Json textOf(const std::optional<std::string>& text) { return text ? Json(*text) : Json(); }
 
@@ -198,7 +207,9 @@ std::vector<double> scaleNumbers(const glm::dvec3& scale) {
 void addRender(const RenderDescription& description, Json& d) {
   const RenderSettings& s = description.settings;
   d.update({{"size", fmt::format("{}x{}", s.width, s.height)},
-            {"noise-limit", s.noiseLimit ? Json(100 * *s.noiseLimit) : Json()},
+            {"noise-limit", s.noiseLimit ? inverseOf([](double p) { return p / 100; },
+                                                     *s.noiseLimit, 100 * *s.noiseLimit)
+                                         : Json()},
             {"time-limit", numberOf(s.timeLimit)},
             {"crop", cropText(s)},
             {"shard", shardText(s.shard)},
@@ -240,6 +251,11 @@ void addLight(const RenderDescription& description, Json& d) {
             {"show-lights", light.showLights}});
 }
 
+Json orbitStep(const Shutter& shutter) {
+  return inverseOf([&](double step) { return shutter.frames * step; }, shutter.turn,
+                   shutter.turn / shutter.frames);
+}
+
 void addCamera(const CameraDescription& camera, Json& d) {
   d.update({{"camera", textOf(camera.name)},
             {"camera-file", textOf(camera.file)},
@@ -248,7 +264,7 @@ void addCamera(const CameraDescription& camera, Json& d) {
     d.update({{"shutter", shutter->frames},
               {"shutter-steps", shutter->steps},
               {"fps", shutter->fps},
-              {"orbit-step", shutter->turn != 0 ? Json(shutter->turn / shutter->frames) : Json()}});
+              {"orbit-step", shutter->turn != 0 ? orbitStep(*shutter) : Json()}});
 }
 
 // Options that hold for all models.

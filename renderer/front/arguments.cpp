@@ -2,25 +2,16 @@
 #include "front/arguments.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/text.h"
 #include "image/size_limits.h"
 
 namespace chromeball {
 namespace {
-
-// Reads a number from the front of `text` and removes it.
-template <class Number>
-bool takeNumber(std::string_view& text, Number& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc()) return false;
-  text.remove_prefix(end - text.data());
-  return true;
-}
 
 bool takeLetter(std::string_view& text, char letter) {
   if (text.empty() || text.front() != letter) return false;

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cfloat>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/text.h"
 #include "front/arguments.h"
 
@@ -32,13 +32,6 @@ std::string describeRange(const Range& range, bool whole) {
     return fmt::format("{} above {}, at most {}", kind, number(range.min), number(range.max));
   return fmt::format("{} {} {} {} {}", kind, range.excludesMin ? "between" : "from",
                      number(range.min), range.excludesMin ? "and" : "to", number(range.max));
-}
-
-template <class Number>
-bool parseWhole(std::string_view text, Number& number) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
 }
 
 [[noreturn]] void refuse(const Setting& setting, std::string_view text,
@@ -69,7 +62,7 @@ double parseNumber(const Setting& setting, std::string text, const std::string& 
   const std::string given = text;
   if (setting.unit == "percent" && text.ends_with('%')) text.pop_back();
   double number = 0;
-  if (!parseWhole(text, number)) refuse(setting, given, location);
+  if (!toNumber(text, number)) refuse(setting, given, location);
   return number;
 }
 
@@ -79,7 +72,7 @@ std::vector<double> parseList(const Setting& setting, const std::string& text,
   std::vector<double> numbers;
   for (size_t begin = 0; begin <= text.size();) {
     const size_t end = std::min(text.find(',', begin), text.size());
-    if (!parseWhole(std::string_view(text).substr(begin, end - begin), numbers.emplace_back()))
+    if (!toNumber(std::string_view(text).substr(begin, end - begin), numbers.emplace_back()))
       refuse(setting, text, location);
     begin = end + 1;
   }
@@ -148,7 +141,7 @@ SettingValue parseSetting(const Setting& setting, const std::vector<std::string>
       break;
     case Type::Integer: {
       uint64_t number = 0;
-      if (!parseWhole(text, number)) refuse(setting, text, location);
+      if (!toNumber(text, number)) refuse(setting, text, location);
       value = number;
       break;
     }

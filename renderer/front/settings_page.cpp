@@ -137,6 +137,11 @@ std::string settingsPage() {
   for (const Conflict& conflict : conflicts())
     page +=
         fmt::format("| {} | {} | {} |\n", conflict.feature.name, conflict.with.name, conflict.why);
+  page +=
+      "\n## What has no effect alone\n\nA warning names a setting that is given in vain.\n\n"
+      "| Setting | has no effect without |\n| --- | --- |\n";
+  for (const Dependence& dependence : dependences())
+    page += fmt::format("| `{}` | {} |\n", dependence.setting, dependence.needs);
   return page;
 }
 

@@ -49,12 +49,8 @@ ViewFrame viewFrame(const Image& image, const std::optional<Placement>& placemen
                     const Metadata& metadata) {
   ViewFrame frame{0, 0, image.width, image.height, 0};
   if (placement) frame = {placement->x, placement->y, placement->width, placement->height, 0};
-  if (const auto found = metadata.find("cameraFov"); found != metadata.end()) {
-    const float* number = std::get_if<float>(&found->second);
-    const int* whole = std::get_if<int>(&found->second);
-    const double fov = number ? double(*number) : whole ? *whole : 0;
-    if (fov > 0 && fov < 180) frame.fov = fov;
-  }
+  const double fov = metadataNumber(metadata, "cameraFov").value_or(0);
+  if (fov > 0 && fov < 180) frame.fov = fov;
   return frame;
 }
 

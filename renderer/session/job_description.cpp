@@ -80,16 +80,20 @@ void describeCamera(const RenderSettings& settings, const LoadedScene& loaded, J
   d["worldToNDC"] = rows(cameraToNdc(camera, double(settings.width) / settings.height) * toCamera);
 }
 
-// The description, with contents of files instead of their names, and without limits. `apart`: a
-// file whose contents do not count.
-Json describeContents(const LoadedScene& loaded, const std::optional<std::string>& apart = {}) {
+// Which files count by their contents: all, or those that the description does not repeat, which
+// are neither the scene file nor a camera's.
+enum class FileContents { All, Others };
+
+// The description, with contents of files instead of their names, and without limits.
+Json describeContents(const LoadedScene& loaded, FileContents which) {
   const RenderDescription& job = loaded.description;
   Json identity = describeJob(loaded);
   for (const char* name : kPaths) identity.erase(name);
   for (const char* name : kLimits) identity.erase(name);
-  if (!job.path.empty()) identity["contents of scene"] = fingerprint(job.path);
+  const bool all = which == FileContents::All;
+  if (all && !job.path.empty()) identity["contents of scene"] = fingerprint(job.path);
   for (const std::string& file : loaded.files) {
-    if (file == apart) continue;
+    if (!all && file == job.camera.file) continue;
     const std::string row = "contents of " + std::filesystem::path(file).filename().string();
     identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));
   }
@@ -102,6 +106,13 @@ uint64_t hashOf(const std::vector<PunctualLight>& lights) {
     for (const vec3& v : {light.position, light.direction, light.intensity})
       for (int i = 0; i < 3; ++i) sum = hash(sum, uint64_t(std::bit_cast<uint32_t>(v[i])));
   return sum;
+}
+
+// A float where that is all of the number.
+Metadata::mapped_type numberAttribute(double number) {
+  const float rounded = float(number);
+  if (double(rounded) == number) return rounded;
+  return number;
 }
 
 }  // namespace
@@ -124,7 +135,7 @@ Metadata toMetadata(const Json& description) {
     if (value.is_string())
       metadata[name] = value.get<std::string>();
     else if (value.is_number_float())
-      metadata[name] = value.get<float>();
+      metadata[name] = numberAttribute(value.get<double>());
     else if (value.is_number() && value <= INT32_MAX && name != "seed")  // a seed has 64 bits
       metadata[name] = value.get<int>();
     else if (value.is_array() && value.size() == std::tuple_size_v<Matrix44>)
@@ -136,7 +147,7 @@ Metadata toMetadata(const Json& description) {
 }
 
 std::string identityOf(const LoadedScene& loaded) {
-  Json identity = describeContents(loaded);
+  Json identity = describeContents(loaded, FileContents::All);
   for (const char* name : kVariedByComparisons) identity.erase(name);
   identity["threads"] = threadCount();
   return jsonText(identity);
@@ -144,7 +155,7 @@ std::string identityOf(const LoadedScene& loaded) {
 
 std::string renderIdentity(const LoadedScene& loaded) {
   const RenderDescription& job = loaded.description;
-  Json identity = describeContents(loaded);
+  Json identity = describeContents(loaded, FileContents::All);
   identity["layers"] = layerNames(job);
   if (job.settings.shard.count > 1)  // which samples are a shard's depends on the number of all
     identity["samples"] = job.settings.samplesOfAll();
@@ -152,7 +163,7 @@ std::string renderIdentity(const LoadedScene& loaded) {
 }
 
 std::string lightIdentity(const LoadedScene& loaded) {
-  Json identity = describeContents(loaded, loaded.description.camera.file);
+  Json identity = describeContents(loaded, FileContents::Others);
   for (const char* name : kOfImage) identity.erase(name);
   if (std::ranges::none_of(loaded.scene.instances, &Instance::moves))
     for (const char* name : {"animation", "animation-time"}) identity.erase(name);

@@ -24,7 +24,8 @@ namespace chromeball {
 // the number does not, since the passes differ.
 nlohmann::ordered_json describeJob(const LoadedScene& loaded);
 
-// The same as attributes of an EXR file: matrices as such, other lists as JSON.
+// The same as attributes of an EXR file, without loss: numbers as floats, or as doubles where a
+// float does not hold them; matrices as such, other lists as JSON.
 Metadata toMetadata(const nlohmann::ordered_json& description);
 
 // The common properties of all renders of a comparison, as JSON: the description without the

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "description/capabilities.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "lighting/strategy.h"
@@ -32,7 +33,7 @@ Messages checkOutputs(const RenderDescription& job) {
   const auto warn = [&](std::string_view setting, const std::string& why) {
     if (job.origins.has(setting))
       messages.push_back({Message::Kind::Warning,
-                          fmt::format("{} has no effect: {}", job.origins.of(setting), why)});
+                          fmt::format("{} has no effect: {}", namedOrigin(job, setting), why)});
   };
   for (const char* name : {"tonemap", "exposure", "output.develop"})
     if (!has(".png")) warn(name, fmt::format("it is for .png; {} holds radiance", files.front()));

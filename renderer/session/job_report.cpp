@@ -126,6 +126,8 @@ Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
   metadata["seconds"] = float(seconds);
   metadata.merge(sampleMetadata(finished, render));
   if (job.settings.clamp) metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
+  if (const Shard& shard = job.settings.shard; shard.samplesOfAll > 0)
+    metadata["samplesOfAll"] = int(shard.samplesOfAll);  // up to kMaxSamples
   metadata.merge(idManifests(finished.image, loaded.scene));
   return metadata;
 }

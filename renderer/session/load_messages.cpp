@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/file.h"
+#include "description/capabilities.h"
 #include "render/guide_training.h"
 #include "session/memory_estimate.h"
 
@@ -36,6 +37,22 @@ bool receivesNoShadow(const LoadedScene& loaded) {
     if (!loaded.isObject[i] && scene.materials[size_t(scene.instances[i].material)].unlit)
       return true;
   return false;
+}
+
+SceneContents contentsOf(const LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
+  const Scene& scene = loaded.scene;
+  const auto hasMaterial = [&](const auto& isSuch) {
+    return std::ranges::any_of(scene.instances, [&](const Instance& i) {
+      return isSuch(scene.materials[size_t(i.material)]);
+    });
+  };
+  return {.hasProbe = job.probe.file || job.probe.map || scene.environment,
+          .hasModelLights = loaded.hasModelLights,
+          .hasBodies = hasBodies(scene),
+          .hasStraightGlass = hasMaterial([](const Material& m) { return m.straightShadows; }),
+          .hidesBacks = hasMaterial([](const Material& m) { return !m.doubleSided; }),
+          .moves = scene.moves || loaded.camera.motion};
 }
 
 void addMemory(const LoadedScene& loaded, Collector& messages) {
@@ -137,6 +154,7 @@ Messages loadMessages(const LoadedScene& loaded) {
     messages.warn(
         "the local scene is unlit (KHR_materials_unlit): it shows neither shadows nor light of the "
         "objects; give it a material that is lit");
+  for (const std::string& line : idleSettings(job, contentsOf(loaded))) messages.warn(line);
   addMemory(loaded, messages);
   if (const auto& probe = job.probe.file)
     addProbe(*probe, loaded.loadedProbe, messages);

@@ -110,6 +110,7 @@ void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cach
     checkInside(models.scene, *surroundingsOf(job, models.origin), job.sceneName());
   loaded.view = models.view;
   loaded.camera = models.camera;
+  loaded.hasModelLights = models.hasLights;
   loaded.modelWarnings = std::move(models.warnings);
   if (!job.probe.file && !models.scene.environment) checkLit(job, models.scene);
   shareMeshes(loaded.scene, models.scene);
@@ -156,6 +157,7 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
                      std::move(probe),
                      surroundingsOf(job, models.origin),
                      std::move(room),
+                     models.hasLights,
                      models.origin,
                      std::move(sources),
                      std::move(files)};

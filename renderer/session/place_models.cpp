@@ -98,7 +98,6 @@ Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& mo
     append(scene, loadGltf(model.file, model.placement, add, choice));
   }
   const float factor = float(job.lighting.lamps);
-  if (factor == 0) scene.lights.clear();
   for (PunctualLight& light : scene.lights) light.intensity *= factor;
   return scene;
 }
@@ -124,6 +123,8 @@ PlacedModels placeModels(RenderDescription& job, ModelCache& cache, const Automa
   placed.view = view ? *view : viewAtStart(job, placed, cache);
   placed.camera = cameraOf(job, scene, placed.view, placed.origin);
   if (job.camera.shutter) openShutter(job, placed, cache);
+  placed.hasLights = !scene.lights.empty();
+  if (job.lighting.lamps == 0) scene.lights.clear();
   for (const Lamp& lamp : job.lamps) addLamp(scene, lamp, placed.origin);
   removeLamps(job, scene);
   for (Material& material : scene.materials) material.singleSided = job.singleSided;

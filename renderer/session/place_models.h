@@ -18,7 +18,8 @@ struct PlacedModels {
   Scene scene;
   Camera camera;
   AutomaticView view;
-  glm::dvec3 origin{0};  // of the scene's coordinates in the world, metres
+  glm::dvec3 origin{0};    // of the scene's coordinates in the world, metres
+  bool hasLights = false;  // punctual ones of the models, also if they are off
   std::vector<std::string> warnings;
 };
 
@@ -33,7 +34,8 @@ PlacedModels placeModels(RenderDescription& job, ModelCache& cache,
 Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin);
 
-// `models`, which are the job's at some time, at this origin and without lamps; an animated model
+// `models`, which are the job's at some time, at this origin and without lamps, with their lights,
+// which are black if the job has them off; an animated model
 // may have no triangles at its time. `warnings`: each once.
 Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
                  const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings);

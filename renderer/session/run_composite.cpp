@@ -89,6 +89,15 @@ JobResult renderComposite(const LoadedScene& loaded, const PreparedScene& prepar
       finishComposite(finishPlan(loaded, rendered.result), rendered, progress, stop);
   finished.composite->reflectance = reflectance;
   Messages messages = warningsOf(*finished.composite, job.probe.scale);
+  const auto& limit = job.settings.noiseLimit;
+  if (limit && plan.passes == Passes::Two && !rendered.result.interrupted &&
+      finished.noise.noise > *limit)
+    messages.push_back(
+        {Message::Kind::Warning,
+         fmt::format("the noise of the composite is {:.3g}%, above the limit of {:g}%, "
+                     "which holds for its first pass: it is relative to plate and "
+                     "light of the scene together; give a smaller --noise",
+                     100 * finished.noise.noise, 100 * *limit)});
   if (loaded.plateScale)  // nothing better is known
     for (Message& message : messages) message.remedy.reset();
   return {std::move(finished), std::move(rendered.result), std::move(messages)};

@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "commands.h"
 #include "front/plan_render.h"
+#include "heeded_settings.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "messages.h"
@@ -28,6 +29,7 @@ RenderDescription plannedJob(const BakeOptions& a) {
     throwInput("{}: a composite cannot be baked; bake its model", scene.composite->location);
   if (a.what == "ambient-occlusion" && !a.settings.has("probe.file"))
     scene.lamps.push_back({.ambient = AmbientLamp{}});  // it needs no light of the user's
+  dropUnheeded(scene, SceneCommand::Bake);
   Settings settings = a.settings;
   settings.erase("render.ao_distance");
   return planJob(std::move(scene), settings);

@@ -2,10 +2,12 @@
 #include "basis_job.h"
 
 #include "base/error.h"
+#include "heeded_settings.h"
 
 namespace chromeball {
 
-RenderDescription basisJob(const SceneOptions& options, const char* what) {
+RenderDescription basisJob(const SceneOptions& options, SceneCommand command) {
+  const char* what = command == SceneCommand::Basis ? "light stage" : "transfer";
   SceneFile scene = openScene(options.scene);
   if (scene.composite)
     throwInput("{}: a composite has no {}; take its model", scene.composite->location, what);
@@ -13,6 +15,7 @@ RenderDescription basisJob(const SceneOptions& options, const char* what) {
     throwInput("{}: [surroundings] are not at infinity, as the light of a {} is", scene.path, what);
   for (const char* name : {"probe.file", "probe.mapping", "probe.rotation", "probe.scale"})
     scene.settings.erase(name);
+  dropUnheeded(scene, command);
   scene.sources.clear();
   scene.probeTurns.clear();
   scene.lamps.push_back({.ambient = AmbientLamp{}});  // black: no scene needs a light of its own

@@ -8,9 +8,9 @@
 
 namespace chromeball {
 
-// Without the scene's probe, which relighting replaces. `what`: "light stage", for errors. Throws
+// Without the scene's probe, which relighting replaces. `command`: of pixels or vertices. Throws
 // InputError for composites and surroundings, which have none.
-RenderDescription basisJob(const SceneOptions& options, const char* what);
+RenderDescription basisJob(const SceneOptions& options, SceneCommand command);
 
 LoadedScene loadBasisScene(const RenderDescription& job);
 

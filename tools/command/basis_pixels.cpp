@@ -86,7 +86,7 @@ void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
   const DirectionBasis basis(own.directions, "--directions");
   checkOutputFile(own.out, {".exr"});
   const ThreadLimit threads = threadLimit(options.settings);
-  RenderDescription job = basisJob(options, "light stage");
+  RenderDescription job = basisJob(options, SceneCommand::Basis);
   const LoadedScene loaded = loadBasisScene(job);
   job = loaded.description;
   checkDistinct({own.out}, loaded.files);

@@ -17,21 +17,15 @@
 namespace chromeball {
 namespace {
 
-// Options of the pixels of a light stage.
-constexpr std::string_view kOfPixels[] = {
-    "size",       "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
-    "mis",        "glass-shadows",     "single-sided",       "transparent",
-    "camera-file"};
-
 void check(const SceneOptions& options, const BasisVerticesOptions& own) {
   checkOutputFile(own.output, {".glb", ".gltf"});
   for (const Setting& setting : settingTable())
-    if (options.settings.has(setting.name()) && std::ranges::count(kOfPixels, setting.option) > 0)
+    if (options.settings.has(setting.name()) && !isOptionOf(SceneCommand::BasisVertices, setting))
       throwInput("--{}: has no effect with --at vertices; leave it out", setting.option);
 }
 
 RenderDescription transferJob(const SceneOptions& options) {
-  RenderDescription job = basisJob(options, "transfer");
+  RenderDescription job = basisJob(options, SceneCommand::BasisVertices);
   if (job.settings.maxDepth < 1)
     throwInput("--max-depth: should be 1 (direct light) or more for transfer");
   return job;

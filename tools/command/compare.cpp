@@ -8,7 +8,7 @@
 #include "base/json_text.h"
 #include "commands.h"
 #include "front/plan_render.h"
-#include "front/setting_table.h"
+#include "heeded_settings.h"
 #include "image/io/output_file.h"
 #include "interrupt.h"
 #include "lighting/methods.h"
@@ -172,8 +172,7 @@ void compare(const CompareArguments& a) {
   SceneFile scene = openScene(a.scene.scene);
   const bool hadComposite = scene.composite.has_value();
   scene.composite.reset();
-  for (const Setting& setting : settingTable())  // compare() varies or ignores these
-    if (setting.renderOnly) scene.settings.erase(setting.name());
+  dropUnheeded(scene, SceneCommand::Compare);
   RenderDescription job = planJob(std::move(scene), a.scene.settings);
   Study study = planStudy(a);
   const ThreadLimit threads = threadLimit(a.scene.settings);

@@ -57,13 +57,6 @@ struct Reader {
   }
 };
 
-// `noise` of the render; NaN: unknown.
-double noiseOf(const Metadata& metadata) {
-  const auto found = metadata.find("noise");
-  const float* noise = found == metadata.end() ? nullptr : std::get_if<float>(&found->second);
-  return noise ? double(*noise) : double(NAN);
-}
-
 Image withColor(Image image, const Image& color) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) image.setRgb(x, y, color.rgb(x, y));
@@ -100,7 +93,8 @@ void run(const ImageDenoiseArguments& arguments) {
   output.placement = file.placement;
   Image noisy = withColor(*findColorAndAlpha(file), color.mean);
   output.layers.push_back({"", noisy.channels == 4 ? "RGBA" : "RGB", std::move(noisy)});
-  const double noise = addDenoised(std::move(denoised), noiseOf(output.metadata), output);
+  const double before = metadataNumber(output.metadata, "noise").value_or(NAN);
+  const double noise = addDenoised(std::move(denoised), before, output);
   if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
   print(writeInWindow(arguments.output, std::move(output), arguments.input), false);
   if (!arguments.quiet)

@@ -30,7 +30,8 @@ struct MergeArguments {
 // numbers in the layers of all parts.
 Metadata wholeMetadata(const PartSet& parts) {
   Metadata metadata = readExrMetadata(parts.paths().front());
-  for (const char* name : {"shard", "crop", "seconds", "command", "clamp_light_removed"})
+  for (const char* name :
+       {"shard", "samplesOfAll", "crop", "seconds", "command", "clamp_light_removed"})
     metadata.erase(name);
   std::map<std::string, std::map<int, std::string>> names{{"node", {}}, {"material", {}}};
   for (const std::string& path : parts.paths()) {

@@ -38,8 +38,10 @@ ProgressBar::~ProgressBar() {
 
 void ProgressBar::update(double fraction) {
   const Clock::time_point now = Clock::now();
-  if (!shown_ || now - last_ < std::chrono::milliseconds(100)) return;
+  const bool ends = fraction >= 1 && !ended_;  // which is drawn at once
+  if (!shown_ || (!ends && now - last_ < std::chrono::milliseconds(100))) return;
   last_ = now;
+  ended_ = fraction >= 1;
   drawn_ = true;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   std::string times = fmt::format("{} elapsed", clockTime(elapsed));

@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// Draws only if `shown`, at most ten times a second.
+// Draws only if `shown`, at most ten times a second, and the end.
 class ProgressBar {
  public:
   explicit ProgressBar(bool shown, std::string title = "rendering");
@@ -23,7 +23,7 @@ class ProgressBar {
 
  private:
   using Clock = std::chrono::steady_clock;
-  bool shown_, drawn_ = false;
+  bool shown_, drawn_ = false, ended_ = false;
   std::string title_, description_;
   Clock::time_point start_ = Clock::now(), last_{};
 };

@@ -55,6 +55,7 @@ LightStage readPhotographsOf(const RelightOptions& a) {
 StageBands openStage(const RelightOptions& a) {
   if (a.isOfPhotographs()) return StageBands(readPhotographsOf(a));
   StageReader file(a.stage);
+  print(file.messages(), a.quiet);
   const double rest = relitStageBytes(file.width(), file.height());
   return {std::move(file), memoryOf(a) - rest, a.stage};
 }
@@ -63,6 +64,7 @@ StageBands openStage(const RelightOptions& a) {
 LightStage readStage(const RelightOptions& a) {
   if (a.isOfPhotographs()) return readPhotographsOf(a);
   StageReader file(a.stage);
+  print(file.messages(), a.quiet);
   checkInMemory(file.basis(), file.width(), file.height(), memoryOf(a) - file.bufferBytes(),
                 "--preview");
   return file.read(0, file.height());

@@ -127,11 +127,34 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   printOutcome(job, result, options.quiet());
 }
 
-bool isFinished(const RenderDescription& job) {
-  const auto& stats = job.output.stats;
-  return std::all_of(job.output.files.begin(), job.output.files.end(),
-                     [](const std::string& path) { return std::filesystem::exists(path); }) &&
-         (!stats || std::filesystem::exists(*stats));
+// Whether all files of a frame exist.
+bool isFinished(const SequenceFrame& frame) {
+  Settings all = frame.scene.settings;
+  all.merge(frame.given);
+  const auto files = all.get<std::vector<std::string>>("output.file");
+  const auto stats = all.getIfGiven<std::string>("stats");
+  const auto exists = [](const std::string& path) { return std::filesystem::exists(path); };
+  return std::ranges::all_of(files, exists) && (!stats || exists(*stats));
+}
+
+// The probes of all frames that are to be rendered: a render of hours does not end at the first
+// that is missing.
+void checkProbes(const Sequence& sequence, bool overwrites) {
+  std::vector<std::string> missing;
+  std::string location;
+  for (const int number : sequence.numbers()) {
+    const SequenceFrame frame = sequence.frame(number);
+    const auto probe = frame.given.getIfGiven<std::string>("probe.file");
+    if (!probe || std::filesystem::exists(*probe) || (!overwrites && isFinished(frame))) continue;
+    missing.push_back(*probe);
+    location = frame.given.location("probe.file");
+  }
+  if (missing.empty()) return;
+  const size_t rest = missing.size() - 1;
+  throwInput("{}: {}: no such file{}", location, missing.front(),
+             rest > 0 ? fmt::format("; {} more of the frames' probes {} missing", rest,
+                                    rest == 1 ? "is" : "are")
+                      : "");
 }
 
 // Messages that an earlier frame has not printed.
@@ -142,6 +165,8 @@ void printNew(const Messages& messages, std::set<std::string>& printed, bool qui
 
 void renderFrames(const Sequence& sequence, const SceneOptions& options) {
   const std::vector<int>& frames = sequence.numbers();
+  const bool overwrites = options.settings.get<bool>("overwrite");
+  if (options.settings.has("probe-sequence")) checkProbes(sequence, overwrites);
   const ThreadLimit threads = threadLimit(options.settings);
   const Viewers viewers(options.settings, [] { interrupted = true; });
   catchInterrupts();
@@ -152,7 +177,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     const SequenceFrame frame = sequence.frame(frames[i]);
     RenderDescription job = planJob(frame.scene, frame.given);
     const Messages outputMessages = checkOutputs(job);
-    if (!options.settings.get<bool>("overwrite") && isFinished(job)) {
+    if (!overwrites && isFinished(frame)) {
       ++kept;
       continue;
     }

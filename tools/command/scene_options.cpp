@@ -2,6 +2,7 @@
 #include "scene_options.h"
 
 #include <algorithm>
+#include <span>
 
 #include "front/settings_page.h"
 #include "progress_bar.h"
@@ -82,11 +83,10 @@ constexpr std::string_view kOfBasis[] = {"size",
                                          "progress",
                                          "quiet"};
 
-bool isOf(SceneCommand command, const Setting& setting) {
-  if (command == SceneCommand::Bake) return std::ranges::count(kOfBake, setting.option) > 0;
-  if (command == SceneCommand::Basis) return std::ranges::count(kOfBasis, setting.option) > 0;
-  return command == SceneCommand::Render || !setting.renderOnly;
-}
+// Of these, those that vertices do not need.
+constexpr std::string_view kOfPixels[] = {
+    "size", "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
+    "mis",  "transparent",       "camera-file"};
 
 bool isList(const Setting& setting) {
   return setting.type == SettingType::Choices || setting.type == SettingType::Files;
@@ -121,6 +121,24 @@ void addSettingOption(Command app, const Setting& setting, Settings& settings) {
 
 }  // namespace
 
+bool isOptionOf(SceneCommand command, const Setting& setting) {
+  const auto isIn = [&](std::span<const std::string_view> options) {
+    return !setting.option.empty() && std::ranges::count(options, setting.option) > 0;
+  };
+  switch (command) {
+    case SceneCommand::Bake:
+      return isIn(kOfBake);
+    case SceneCommand::Basis:
+      return isIn(kOfBasis);
+    case SceneCommand::BasisVertices:
+      return isIn(kOfBasis) && !isIn(kOfPixels);
+    case SceneCommand::Compare:
+      return !setting.renderOnly;
+    default:
+      return true;
+  }
+}
+
 bool SceneOptions::showsProgress() const {
   return settings.get<bool>("progress") || (ProgressBar::isTerminal() && !quiet());
 }
@@ -130,7 +148,7 @@ void addSceneOptions(Command app, SceneOptions& options, SceneCommand command) {
       .typeName("SCENE")
       .required();
   for (const Setting& setting : settingTable())
-    if (!setting.option.empty() && isOf(command, setting))
+    if (!setting.option.empty() && isOptionOf(command, setting))
       addSettingOption(app, setting, options.settings);
   app.widerNames();
 }

@@ -19,7 +19,9 @@ struct SceneOptions {
 
 // The command that the options are for: compare varies some settings itself, and does not need
 // others; bake and basis need few.
-enum class SceneCommand { Render, Compare, Bake, Basis };
+enum class SceneCommand { Render, Compare, Bake, Basis, BasisVertices };
+
+bool isOptionOf(SceneCommand command, const Setting& setting);
 
 // `options` is filled when the command line is parsed; it must outlive `app`.
 void addSceneOptions(Command app, SceneOptions& options, SceneCommand command);

@@ -60,9 +60,7 @@ Exif parse(const TiffBlock& block) {
 
 Exif fromAttributes(const Metadata& metadata) {
   const auto find = [&](const char* name) -> std::optional<double> {
-    const auto found = metadata.find(name);
-    if (found == metadata.end()) return std::nullopt;
-    const auto* number = std::get_if<float>(&found->second);
+    const std::optional<double> number = metadataNumber(metadata, name);
     return number ? positive(*number) : std::nullopt;
   };
   return {find("expTime"), find("aperture"), find("isoSpeed"), {}};

@@ -2,6 +2,7 @@
 #include "image/io/exr_metadata.h"
 
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfEnvmapAttribute.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfHeader.h>
@@ -40,6 +41,8 @@ Metadata metadataOf(const Imf::Header& header) {
       metadata[name] = *integer;
     } else if (const float* number = typed<float>(attribute)) {
       metadata[name] = *number;
+    } else if (const double* precise = typed<double>(attribute)) {
+      metadata[name] = *precise;
     } else if (const auto* matrix = typed<Imath::M44f>(attribute)) {
       std::copy_n(matrix->getValue(), 16, std::get<Matrix44>(metadata[name] = Matrix44{}).begin());
     } else if (const auto* envmap = typed<Imf::Envmap>(attribute)) {
@@ -76,6 +79,8 @@ void setMetadata(const Metadata& metadata, Imf::Header& header) {
         header.insert(name, Imf::StringAttribute(*text));
     } else if (const auto* number = std::get_if<float>(&contents)) {
       header.insert(name, Imf::FloatAttribute(*number));
+    } else if (const auto* precise = std::get_if<double>(&contents)) {
+      header.insert(name, Imf::DoubleAttribute(*precise));
     } else {
       header.insert(name, Imf::IntAttribute(std::get<int>(contents)));
     }

@@ -2,7 +2,6 @@
 #include "image/io/pfm.h"
 
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/number_text.h"
 #include "image/size_limits.h"
 
 namespace chromeball {
@@ -30,10 +30,7 @@ std::string_view nextWord(std::string_view text, size_t& position) {
 template <class Number>
 Number parse(const std::filesystem::path& path, std::string_view word) {
   Number number{};
-  if (word.starts_with('+') && !word.starts_with("+-"))
-    word.remove_prefix(1);  // which from_chars does not know
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc() || end != word.data() + word.size())
+  if (!toNumber(word, number))
     throwInput("{}: the PFM header should be: PF, width, height, scale", path.string());
   return number;
 }

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "image/image.h"
+#include "image/io/conversion_note.h"
 #include "image/io/exif.h"
 #include "image/io/exr_input.h"
 #include "image/io/image_format.h"
@@ -247,6 +248,17 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
 
 }  // namespace
 
+std::optional<double> metadataNumber(const Metadata& metadata, const std::string& name) {
+  const auto found = metadata.find(name);
+  if (found == metadata.end()) return {};
+  return std::visit(
+      [](const auto& value) -> std::optional<double> {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) return value;
+        return {};
+      },
+      found->second);
+}
+
 Metadata readExrMetadata(const fs::path& path) {
   return ExrInput(path, kMaxImageFloats).metadata();
 }
@@ -283,13 +295,7 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
         file.primaries->green.y, file.primaries->blue.x, file.primaries->blue.y,
         file.primaries->white.x, file.primaries->white.y);
   if (file.primaries && !isRec709(*file.primaries))
-    file.messages.push_back(
-        {Message::Kind::Note,
-         fmt::format("{}: its colour is converted to Rec. 709 from red ({:.4g}, {:.4g}), green "
-                     "({:.4g}, {:.4g}), blue ({:.4g}, {:.4g}), white ({:.4g}, {:.4g})",
-                     path.string(), file.primaries->red.x, file.primaries->red.y,
-                     file.primaries->green.x, file.primaries->green.y, file.primaries->blue.x,
-                     file.primaries->blue.y, file.primaries->white.x, file.primaries->white.y)});
+    file.messages.push_back(conversionNote(path, *file.primaries));
   return file;
 }
 

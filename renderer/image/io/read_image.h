@@ -19,7 +19,10 @@ namespace chromeball {
 
 // A transform of row vectors, as in OpenEXR: row by row, with the translation in the last row.
 using Matrix44 = std::array<float, 16>;
-using Metadata = std::map<std::string, std::variant<std::string, int, float, Matrix44>>;
+using Metadata = std::map<std::string, std::variant<std::string, int, float, double, Matrix44>>;
+
+// That of this name, whatever its type; nullopt if there is none, or a text or a matrix.
+std::optional<double> metadataNumber(const Metadata& metadata, const std::string& name);
 
 // OpenEXR's attribute of probes in Metadata, and its values (ImfEnvmap.h).
 inline constexpr const char* kEnvmapAttribute = "envmap";

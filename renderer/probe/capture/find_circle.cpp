@@ -24,6 +24,10 @@ constexpr double kLeastInside = 0.5;  // of the outline
 // octagons whose sides are not shorter than 50 pixels 1 and more.
 constexpr double kLeastAgreement = 0.95, kLargestError = 1, kMostContradiction = 0.75;
 
+// Of the deviations that repeat around the outline: those of balls have at most a third of the mean
+// square, those of dodecagons 0.4 to 0.98, of more than half a pixel.
+constexpr double kMostRipple = 0.5, kMostRippleShare = 0.38;
+
 // What a circle has on edges. Its rank is the length of the outline on edges beyond what random
 // edges would give.
 struct Support {
@@ -238,6 +242,12 @@ bool isSharp(const Image& channel, const Circle& circle) {
   return sharp >= kLeastShare * shown;
 }
 
+// Around the circle that was found: around another one the search ends short of some deviations.
+bool isPolygon(const Image& image, const Circle& circle) {
+  const std::optional<Outline> outline = fitOutline(image, circle);
+  return outline && outline->ripple > kMostRipple && outline->rippleShare > kMostRippleShare;
+}
+
 }  // namespace
 
 std::optional<FoundCircle> findCircle(const Image& image) {
@@ -259,7 +269,8 @@ std::optional<FoundCircle> findCircle(const Image& image) {
   if (!outline || found->support + outline->support < kLeastAgreement ||
       !(outline->standardError < kLargestError) ||
       outline->contradiction > kMostContradiction * outline->support ||
-      !isSharp(small, {outline->circle.centre / double(scale), outline->circle.radius / scale}))
+      !isSharp(small, {outline->circle.centre / double(scale), outline->circle.radius / scale}) ||
+      isPolygon(image, outline->circle))
     return std::nullopt;
   return FoundCircle{outline->circle, outline->support, outline->standardError};
 }

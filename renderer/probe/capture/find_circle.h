@@ -21,8 +21,9 @@ struct FoundCircle {
 // picture itself; at last to a fraction of a pixel (outline.h). Parts of the circle may be outside
 // the picture. nullopt if no circle of at least 5% of the picture's shorter side in radius has half
 // of its outline on edges, if few arcs of the final fit agree on it, or only to more than a pixel,
-// or as many lie elsewhere, such as those of an octagon, or if radiance changes there no faster
-// than around it, as in smooth pictures.
+// or as many lie elsewhere, such as those of an octagon, or to and fro in equal steps around it,
+// such as those of a dodecagon, or if radiance changes there no faster than around it, as in smooth
+// pictures.
 std::optional<FoundCircle> findCircle(const Image& image);
 
 }  // namespace chromeball

@@ -139,11 +139,49 @@ double likeliestBlur(const Image& image, const Circle& start) {
   return best;
 }
 
+// The part of the arcs' deviations from a circle that repeats 3 to 24 times around it, as those of
+// a polygon do: its amplitude in pixels, and its share of their mean square. Of arcs whose position
+// is clear.
+struct Ripple {
+  double amplitude = 0, share = 0;
+};
+
+Ripple rippleOf(const ArcProfiles& profiles, const dvec3& change) {
+  constexpr double kClear = 15;
+  constexpr int kFewest = 3, kMost = 24;
+  std::vector<std::pair<double, double>> deviations;  // at angles
+  double mean = 0, meanSquare = 0;
+  for (const ArcProfile& arc : profiles) {
+    if (!(*std::ranges::max_element(arc.doubts) > kClear)) continue;
+    const double error = arc.likeliestOffset() - glm::dot(change, dvec3(arc.normal, 1));
+    deviations.emplace_back(std::atan2(arc.normal.y, arc.normal.x), error);
+    mean += error;
+  }
+  const double count = double(deviations.size());
+  mean /= std::max(count, 1.0);
+  for (auto& [angle, error] : deviations) error -= mean, meanSquare += error * error / count;
+  Ripple best;
+  for (int n = kFewest; n <= std::min(kMost, int(count / 3)); ++n) {
+    double cc = 0, cs = 0, ss = 0, c = 0, s = 0;
+    for (const auto& [angle, error] : deviations) {
+      const double x = std::cos(n * angle), y = std::sin(n * angle);
+      cc += x * x, cs += x * y, ss += y * y, c += x * error, s += y * error;
+    }
+    const double determinant = cc * ss - cs * cs;
+    if (!(determinant > 0.01 * cc * ss)) continue;
+    const double a = (ss * c - cs * s) / determinant, b = (cc * s - cs * c) / determinant;
+    const double share = (a * c + b * s) / (count * std::max(meanSquare, 1e-12));
+    if (share > best.share) best = {std::hypot(a, b), share};
+  }
+  return best;
+}
+
 struct ModelFit {
   dvec3 change;
   double standardError;  // of the jackknife
   double doubt;          // minus the logarithm of the likelihood of an arc, on average
   double support, contradiction;
+  Ripple ripple;
 };
 
 ModelFit fitProfiles(const ArcProfiles& profiles, double radius) {
@@ -152,7 +190,7 @@ ModelFit fitProfiles(const ArcProfiles& profiles, double radius) {
   constexpr double kClear = 15, kLeastApart = 0.8, kApart = 0.01;
   const OutlineDoubt wide(profiles, kWideBound, kPixelsForOne);
   const OutlineDoubt doubt(profiles, kBound, kPixelsForOne);
-  ModelFit fit{doubt.descend(wide.descend(wide.likeliest())), 0, 0, 0, 0};
+  ModelFit fit{doubt.descend(wide.descend(wide.likeliest())), 0, 0, 0, 0, {}};
   const double apart = std::max(kLeastApart, kApart * radius);
 
   std::array<dvec3, kTwelfths> without;
@@ -172,6 +210,7 @@ ModelFit fitProfiles(const ArcProfiles& profiles, double radius) {
     fit.support += (error < kNear) / double(profiles.size());
     fit.contradiction += (error > apart && arc.at(offset) > kClear) / double(profiles.size());
   }
+  fit.ripple = rippleOf(profiles, fit.change);
   return fit;
 }
 
@@ -194,7 +233,9 @@ std::optional<Outline> fitVariances(const Image& image, const Circle& start, Rim
   return Outline{{start.centre + dvec2(change), start.radius + change.z},
                  glm::length(dvec3(kJackknife * step.standardError, ofModel, kLeastError)),
                  step.support,
-                 step.contradiction};
+                 step.contradiction,
+                 step.ripple.amplitude,
+                 step.ripple.share};
 }
 
 }  // namespace

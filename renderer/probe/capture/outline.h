@@ -14,6 +14,9 @@ struct Outline {
   double standardError;  // the largest of those of the centre's coordinates and the radius; pixels
   double support;        // the share of the arcs in the picture that the circle fits, 0 to 1
   double contradiction;  // the share of those that clearly lie elsewhere: by 1% of the radius
+  // Of the arcs' deviations that repeat around the circle, as the corners of a polygon: the
+  // amplitude of the largest, in pixels, and its share of the mean square of all.
+  double ripple, rippleShare;
 };
 
 // Fits a circle to the outline of a ball in a linear picture. `start` is within about two pixels.

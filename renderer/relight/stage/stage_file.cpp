@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "image/io/conversion_note.h"
 
 namespace chromeball {
 namespace {
@@ -131,6 +132,7 @@ StageReader::StageReader(const std::filesystem::path& path)
   if (const auto& primaries = file_.primaries(); primaries && !isRec709(*primaries)) {
     toRec709_ = toRec709(*primaries);
     if (!toRec709_) throwInput("{}: its primaries are degenerate", path.string());
+    messages_.push_back(conversionNote(path, *primaries));
   }
   elements_ = *elements;
   std::vector<std::string> own;

@@ -41,6 +41,7 @@ class StageReader {
   const DirectionBasis& basis() const { return basis_; }
   int width() const { return file_.width(); }
   int height() const { return file_.height(); }
+  const Messages& messages() const { return messages_; }  // that colour is converted
 
   // `count` rows from `top` on. Throws InputError for values that are not finite.
   LightStage read(int top, int count);
@@ -54,6 +55,7 @@ class StageReader {
   ExrRowsReader file_;
   DirectionBasis basis_;
   std::optional<glm::dmat3> toRec709_;  // nullopt: it is
+  Messages messages_;
   std::vector<size_t> elements_, own_;  // positions of their channels; empty: there are none
 };
 

@@ -2,7 +2,6 @@
 #include "relight/stage/stage_photographs.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -10,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/number_text.h"
 #include "base/parallel.h"
 #include "image/io/read_image.h"
 #include "math/vec.h"
@@ -51,9 +51,7 @@ std::optional<std::vector<double>> numbersOf(const std::vector<std::string>& fie
   std::vector<double> numbers;
   for (size_t i = 1; i < fields.size(); ++i) {
     double number = 0;
-    const char* end = fields[i].data() + fields[i].size();
-    const auto [at, error] = std::from_chars(fields[i].data(), end, number);
-    if (error != std::errc() || at != end || !std::isfinite(number)) return std::nullopt;
+    if (!toNumber(fields[i], number) || !std::isfinite(number)) return std::nullopt;
     numbers.push_back(number);
   }
   return numbers;
@@ -63,7 +61,8 @@ std::optional<std::vector<double>> numbersOf(const std::vector<std::string>& fie
 bool isHeading(const std::vector<std::string>& fields) {
   return std::none_of(fields.begin() + 1, fields.end(), [](const std::string& field) {
     double number = 0;
-    return std::from_chars(field.data(), field.data() + field.size(), number).ec == std::errc();
+    std::string_view text = field;
+    return takeNumber(text, number);
   });
 }
 

@@ -2,13 +2,13 @@
 #include "scene/solve/observations.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <span>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/number_text.h"
 
 namespace chromeball {
 namespace {
@@ -44,9 +44,7 @@ Fields split(std::string_view line) {
 
 std::optional<double> numberIn(const std::string& text) {
   double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
+  return toNumber(text, number) ? std::optional(number) : std::nullopt;
 }
 
 // The rows that have values. `columns`: their names; all but the first are numbers, and those from

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "heeded_settings.h"
+
+#include <algorithm>
+#include <span>
+
+#include "front/setting_table.h"
+
+namespace chromeball {
+namespace {
+
+using Names = std::span<const std::string_view>;
+
+// Keys that a command heeds although it does not have their options.
+constexpr std::string_view kKeysOfBake[] = {"render.size",         "camera.file",
+                                            "lighting.lights",     "lighting.mis",
+                                            "render.single_sided", "render.glass_shadows"};
+constexpr std::string_view kKeysOfBasis[] = {"lighting.lights", "lighting.from"};
+constexpr std::string_view kKeysOfBasisVertices[] = {"render.size", "camera.file",
+                                                     "lighting.lights", "lighting.from"};
+// Those whose option means something else than the key.
+constexpr std::string_view kOptionsOfBake[] = {"render.ao_distance"};
+// What a comparison is about: its own options say it.
+constexpr std::string_view kVariedByCompare[] = {"lighting.strategy", "render.samples",
+                                                 "render.time", "render.noise"};
+
+bool isIn(Names names, const Setting& setting) {
+  return std::ranges::count(names, setting.name()) > 0;
+}
+
+Names keysOf(SceneCommand command) {
+  switch (command) {
+    case SceneCommand::Bake:
+      return kKeysOfBake;
+    case SceneCommand::Basis:
+      return kKeysOfBasis;
+    case SceneCommand::BasisVertices:
+      return kKeysOfBasisVertices;
+    default:
+      return {};
+  }
+}
+
+bool heeds(SceneCommand command, const Setting& setting) {
+  if (command == SceneCommand::Bake && isIn(kOptionsOfBake, setting)) return false;
+  return isOptionOf(command, setting) || isIn(keysOf(command), setting);
+}
+
+// Whether an image of `render` would be another one without it.
+bool changesImages(const Setting& setting, const SettingValue& value) {
+  if (setting.effect != Effect::Image && setting.effect != Effect::Limit) return false;
+  const std::string text = toText(value);
+  const bool isDefault = text == setting.fallback && text != "on";  // nothing is on by itself
+  return text != "off" && text != "false" && !isDefault;
+}
+
+}  // namespace
+
+void dropUnheeded(SceneFile& scene, SceneCommand command) {
+  std::vector<std::string> names;
+  std::string location;
+  for (const Setting& setting : settingTable()) {
+    const auto* given = scene.settings.find(setting.name());
+    if (!given || heeds(command, setting)) continue;
+    const bool isVaried = command == SceneCommand::Compare && isIn(kVariedByCompare, setting);
+    if (changesImages(setting, given->value) && !isVaried) {
+      if (names.empty()) location = given->location;
+      names.push_back(setting.name());
+    }
+    scene.settings.erase(setting.name());
+  }
+  if (!names.empty())
+    scene.warnings.push_back(fmt::format(
+        "{}: {} {} no effect here; `chromeball render` heeds {}", location, fmt::join(names, ", "),
+        names.size() == 1 ? "has" : "have", names.size() == 1 ? "it" : "them"));
+}
+
+}  // namespace chromeball

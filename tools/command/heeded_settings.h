@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a command takes from a scene file.
+#pragma once
+
+#include "front/scene_file.h"
+#include "scene_options.h"
+
+namespace chromeball {
+
+// Removes the settings of the file that have no effect on what the command makes, so that they have
+// none by accident either, and adds a warning that names those that would change an image.
+void dropUnheeded(SceneFile& scene, SceneCommand command);
+
+}  // namespace chromeball
