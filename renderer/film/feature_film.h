@@ -23,10 +23,15 @@ class FeatureFilm {
   void add(int x, int y, int half, const FirstHit& first, const Rgb& radiance);
   // As Film::weigh().
   void weigh(double weight);
-  // As Film::add() and archive().
+  // As Film::add(), part() and archive().
   void add(const FeatureFilm& part, int x, int y);
   void copyPixels(const FeatureFilm& from, const PixelRect& rect) {
     if (!empty()) rect.copy(from.pixels_, pixels_, width_);
+  }
+  FeatureFilm part(const PixelRect& rect) const {
+    FeatureFilm part(rect.width, rect.height, false);
+    part.pixels_ = rect.of(pixels_, width_);
+    return part;
   }
   void archive(Archive& a, Rows rows) {
     if (!empty()) a.items(rows.of(pixels_, size_t(width_)));

@@ -32,9 +32,10 @@ class LayerFilm {
   // afterwards.
   void addMeans(const LayerFilm& other);
 
-  // As Film::add() and archive(). Both films have the same layers.
+  // As Film::add(), part() and archive(). Both films have the same layers.
   void add(const LayerFilm& part, int x, int y);
   void copyPixels(const LayerFilm& from, const PixelRect& rect);
+  LayerFilm part(const PixelRect& rect) const;
   void archive(Archive& a, Rows rows);
 
   uint32_t count(int x, int y) const;  // samples

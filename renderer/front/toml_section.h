@@ -9,7 +9,6 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/named_setting.h"
 #include "base/suggest.h"
 #include "front/settings.h"
 #include "math/vec.h"
@@ -42,8 +41,7 @@ struct Entry {
   bool isArray() const { return node->is_array(); }
   bool isArrayOf(size_t count) const { return isArray() && node->as_array()->size() == count; }
 
-  std::string text() const;  // not empty, without U+0000
-  NamedSetting name() const { return {text(), location()}; }
+  std::string text() const;    // not empty, without U+0000
   std::string choice() const;  // one of the setting's choices
   bool flag() const;
   uint64_t integer() const;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/error.h"
 #include "base/parallel.h"
+#include "base/work_monitor.h"
 #include "integrate/first_surface.h"
 #include "integrate/gather_irradiance.h"
 #include "scene/camera.h"
@@ -142,14 +144,19 @@ void fillCache(IrradianceCache& cache, const PathTracer& tracer, const Camera& c
   CacheFiller filler(cache, tracer, camera, settings);
   const double pixels = double(settings.width) * settings.height / (kFinest * kFinest);
   double tried = 0;
-  for (int spacing = kCoarsest; spacing >= kFinest; spacing /= 2) {
-    const std::vector<CachePoint> points = filler.pointsOf(spacing);
-    for (size_t i = 0; i < points.size() && !stop;) {
-      const size_t count = std::min(filler.groupSize(), points.size() - i);
-      filler.tryOut(std::span(points).subspan(i, count));
-      i += count, tried += double(count);
-      progress(std::min(tried / pixels, 1.0));
+  StopMonitor monitor(stop);
+  const MonitoredWork work(&monitor);
+  try {
+    for (int spacing = kCoarsest; spacing >= kFinest; spacing /= 2) {
+      const std::vector<CachePoint> points = filler.pointsOf(spacing);
+      for (size_t i = 0; i < points.size();) {
+        const size_t count = std::min(filler.groupSize(), points.size() - i);
+        filler.tryOut(std::span(points).subspan(i, count));
+        i += count, tried += double(count);
+        progress(std::min(tried / pixels, 1.0));
+      }
     }
+  } catch (const Interrupted&) {  // the records so far are whole
   }
 }
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "base/long_array.h"
 #include "base/parallel.h"
 #include "scene/linear_map.h"
 
@@ -17,8 +18,10 @@ using glm::dvec3;
 template <class T>
 void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
   if (array.empty()) return;
-  std::vector<T> gathered(source.size());
-  for (size_t i = 0; i < source.size(); ++i) gathered[i] = array[source[i]];
+  auto gathered = longArray<T>(source.size());
+  forRanges(source.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) gathered[i] = array[source[i]];
+  });
   array = std::move(gathered);
 }
 

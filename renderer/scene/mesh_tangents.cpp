@@ -7,6 +7,8 @@
 // shared edges.
 #include <array>
 
+#include "base/long_array.h"
+#include "base/work_monitor.h"
 #include "scene/mesh_attributes.h"
 
 namespace chromeball {
@@ -71,13 +73,17 @@ struct VertexFrame {
   }
 };
 
+constexpr size_t kTrianglesAtOnce = 1 << 14;  // in some milliseconds
+
 }  // namespace
 
 void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
   const size_t vertexCount = mesh.positions.size();
-  std::vector<std::array<VertexFrame, 2>> frames(vertexCount);
+  auto frames = longArray<std::array<VertexFrame, 2>>(vertexCount);
   std::vector<Winding> windings;
+  windings.reserve(mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
+    if (windings.size() % kTrianglesAtOnce == 0) endIfCancelled();
     const Contribution c = contributionOf(mesh, uv, t);
     windings.push_back(c.winding);
     if (c.winding == kUndefined) continue;
@@ -88,6 +94,7 @@ void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
   std::vector<uint32_t> source(vertexCount), copy(vertexCount);
   for (uint32_t i = 0; i < vertexCount; ++i) source[i] = copy[i] = i;
   for (uint32_t i = 0; i < vertexCount; ++i) {
+    if (i % kTrianglesAtOnce == 0) endIfCancelled();
     if (!frames[i][kClockwise].isUsed || !frames[i][kCounter].isUsed) continue;
     copy[i] = uint32_t(source.size());
     source.push_back(i);
@@ -97,8 +104,9 @@ void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
       for (int k = 0; k < 3; ++k) mesh.triangles[i][k] = copy[mesh.triangles[i][k]];
   gatherVertices(mesh, source);
 
-  mesh.tangents.resize(source.size());
+  mesh.tangents = longArray<vec4>(source.size());
   for (uint32_t i = 0; i < source.size(); ++i) {
+    if (i % kTrianglesAtOnce == 0) endIfCancelled();
     const std::array<VertexFrame, 2>& both = frames[source[i]];
     const VertexFrame& frame =
         both[i >= vertexCount || !both[kClockwise].isUsed ? kCounter : kClockwise];

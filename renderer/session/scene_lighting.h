@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/named_setting.h"
 #include "description/render_description.h"
 #include "integrate/environment_light.h"
 #include "lighting/polygon_lights.h"
