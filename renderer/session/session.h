@@ -55,13 +55,13 @@ class Session {
   // Begins, if it has not begun: reads files, builds structures and renders.
   void start();
   // Asks the work to end, and does not wait: from any thread at any time. Preparing ends within
-  // milliseconds; a render when the tiles in work are finished, and its image is made of what there
-  // is.
+  // tens of milliseconds; a render when the tiles in work are finished, and its image is made of
+  // what there is.
   void requestCancel();
   // The same, and waits.
   void cancel();
-  // Ends the work within milliseconds, whatever it is, without an image. Takes another description,
-  // for the next start().
+  // Ends the work within tens of milliseconds, whatever it is, without an image. Takes another
+  // description, for the next start().
   void update(RenderDescription description);
 
   bool isRunning() const;
