@@ -24,7 +24,7 @@ void composite(D& d, CompositeMode mode) {
 // A description without conflicts.
 D plain() {
   D d;
-  d.lighting.strategy.name = "importance";
+  d.lighting.strategy = "importance";
   d.probe.file = "sky.exr";
   return d;
 }
@@ -92,8 +92,8 @@ const std::map<std::string_view, std::function<void(D&)>> kBring = {
        composite(d, CompositeMode::Difference);
        d.probe.file.reset();
      }},
-    {"another strategy than importance", [](D& d) { d.lighting.strategy.name = "uniform"; }},
-    {"a strategy without light samples", [](D& d) { d.lighting.strategy.name = "bsdf"; }},
+    {"another strategy than importance", [](D& d) { d.lighting.strategy = "uniform"; }},
+    {"a strategy without light samples", [](D& d) { d.lighting.strategy = "bsdf"; }},
     {"a strategy without lights", [](D&) {}},
     {"one sample per pixel", [](D& d) { d.settings.samples = 1; }},
     {"another integrator than environment-map", [](D&) {}},

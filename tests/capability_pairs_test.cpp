@@ -37,7 +37,7 @@ struct Way {
   double bias = 0;
 };
 
-void strategy(Render& r, const char* name) { r.description.lighting.strategy.name = name; }
+void strategy(Render& r, const char* name) { r.description.lighting.strategy = name; }
 void layer(Render& r, Aov aov) { r.description.settings.aovs.push_back(aov); }
 
 // A region of constant radiance of map() in pixels, away from its edge.
@@ -52,7 +52,7 @@ std::vector<Way> ways(const Image& plate) {
   const auto composite = [plate](Render& r, Passes passes) {
     CompositeDescription& c = r.description.composite.emplace();
     c.plate = plate;
-    c.entry.localScene = {{"floor", ""}, {"panel", ""}};
+    c.entry.localScene = {"floor", "panel"};
     c.passes = passes;
   };
   return {
@@ -135,7 +135,7 @@ Render plain(bool hasObjects = true) {
   D& d = r.description;
   d.scene = scene(hasObjects);
   d.probe.map = std::make_shared<const Image>(map());
-  d.lighting.strategy.name = "importance";
+  d.lighting.strategy = "importance";
   d.camera.placed =
       CameraEntry{.position = {0, 1.5, 4}, .target = {0, 0.5, 0}, .up = {0, 1, 0}, .lens = {}};
   d.size = ImageSize{24, 16};

@@ -230,6 +230,31 @@ TEST(House, ClockThatCanBeSetIsForDatesAlone) {
       containsMatch(contents(kSourceDir / fs::path("renderer/session/machine.cpp")), kSettable));
 }
 
+// The library is a guest in its process: it prints nothing, ends nothing, takes no signals, moves
+// no descriptors and changes nothing that all threads share. (Files of its own are opened by
+// fopen(), open() and streams.)
+TEST(House, LibraryLeavesItsProcessAlone) {
+  static const std::string kForbidden =
+      R"(\bstd::(cout|cerr|clog|signal|terminate|set_terminate|atexit|setlocale|locale::global)\b|)"
+      R"(\b(stdout|stderr|STDOUT_FILENO|STDERR_FILENO|STDIN_FILENO)\b|fmt::(v)?print|)"
+      R"(\b(v?f?printf|puts|putchar|fputs|perror|exit|_exit|_Exit|quick_exit|abort|dup|dup2|dup3|)"
+      R"(freopen|sigaction|sigprocmask|pthread_sigmask|raise|kill|setlocale|setenv|unsetenv|)"
+      R"(putenv|chdir|umask|srand|system|popen|fork|atexit)\s*\()";
+  for (const char* line : {"std::cerr << x", "fmt::print(\"\")", "dup2(a, 2)", "std::exit(1)",
+                           "printf (x)", "write(STDERR_FILENO, x, 1)"})
+    EXPECT_TRUE(containsMatch(line, kForbidden)) << line;
+  for (const char* line :
+       {"std::snprintf(x)", "row.killed()", "outputs(", "system_error(", "exits("})
+    EXPECT_FALSE(containsMatch(line, kForbidden)) << line;
+  int files = 0;
+  for (const fs::path& path : projectFiles({".h", ".cpp"})) {
+    if (!path.generic_string().starts_with("renderer/")) continue;
+    EXPECT_FALSE(containsMatch(contents(kSourceDir / path), kForbidden)) << path;
+    ++files;
+  }
+  EXPECT_GT(files, 400);
+}
+
 TEST(House, SourcesStartWithTheirLicence) {
   static const std::string kSpdx =
       "^(#!.*\n)?(//|#|\\.\\\\\"|<!--) SPDX-License-Identifier: Apache-2\\.0( -->)?\n";

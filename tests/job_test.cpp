@@ -141,12 +141,12 @@ TEST(Job, WhatAProgramChangesIsInHeaderAndIdentity) {
        [](RenderDescription& j) {
          j.camera.shutter = Shutter{0.25, 24, 4, 0};
        }},
-      {"strategy", [](RenderDescription& j) { j.lighting.strategy.name = "bsdf"; }},
+      {"strategy", [](RenderDescription& j) { j.lighting.strategy = "bsdf"; }},
       {"scale", [](RenderDescription& j) { j.probe.scale = glm::dvec3(2); }},
       {"camera", [](RenderDescription& j) { j.camera.placed->position.x = 0.5f; }},
       {"lens",
        [](RenderDescription& j) {
-         j.camera.lens = Lens{0.1f, 3, ""};
+         j.camera.lens = Lens{0.1f, 3};
        }},
       {"lamp", [](RenderDescription& j) { j.lamps[0].punctual->intensity = Rgb(2); }},
       {"place of a lamp", [](RenderDescription& j) { j.lamps[0].position.y += 1; }},
@@ -204,7 +204,7 @@ RenderDescription fromMemory(float height, float radiance) {
   RenderDescription description;
   description.scene = std::make_shared<const Scene>(std::move(scene));
   description.probe.map = std::make_shared<const Image>(constantProbe({8, 4}, Rgb(radiance)));
-  description.lighting.strategy.name = "auto";
+  description.lighting.strategy = "auto";
   description.size = ImageSize{16, 12};
   description.settings.samples = 64;
   return description;
@@ -275,7 +275,7 @@ TEST(Job, AnUnlitLocalSceneIsWarnedOf) {
     description.scene = std::make_shared<const Scene>(std::move(scene));
     CompositeDescription& composite = description.composite.emplace();
     composite.mode = CompositeMode::ShadowCatcher;
-    composite.entry.localScene = {{"floor", ""}};
+    composite.entry.localScene = {"floor"};
     const LoadedScene loaded = loadScene(description);
     EXPECT_EQ(std::ranges::any_of(
                   loaded.messages,

@@ -109,7 +109,9 @@ TEST_F(SceneFileTest, AModelMayShowAnAnimation) {
   ASSERT_TRUE(walk);
   EXPECT_EQ(walk->name, "Walk");
   EXPECT_EQ(walk->seconds, 1.5);
-  EXPECT_EQ(walk->location, scenePath() + ":3");
+  EXPECT_EQ(read("[[model]]\nfile = '../ball.glb'\nanimation = 'Walk'")
+                .origins.of("models[0].choice.animation"),
+            scenePath() + ":3");
   EXPECT_EQ(choice("time = 2").animation->name, "");
 }
 

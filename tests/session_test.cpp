@@ -51,7 +51,7 @@ RenderDescription stageDescription(const Stage& stage, uint32_t samples = 16) {
   RenderDescription d;
   d.scene = stage.scene();
   d.probe.map = std::make_shared<const Image>(gradientProbe({64, 32}, Rgb(0.5f), {0.1, 0.3, 0.2}));
-  d.lighting.strategy.name = "importance";
+  d.lighting.strategy = "importance";
   d.camera.placed =
       CameraEntry{.position = {0, 1, 4}, .target = {0, 0.5, 0}, .up = {0, 1, 0}, .lens = {}};
   d.size = ImageSize{48, 32};
@@ -132,11 +132,10 @@ TEST(Session, UpdateRedoesWhatDiffers) {
                             }),
                      0, 1, 1));
   EXPECT_TRUE(isOnly(change("scale", [&] { d.probe.scale = glm::dvec3(0.1, 2, 3); }), 0, 1, 1));
-  EXPECT_TRUE(
-      isOnly(change("strategy", [&] { d.lighting.strategy.name = "median-cut:16"; }), 0, 0, 1));
+  EXPECT_TRUE(isOnly(change("strategy", [&] { d.lighting.strategy = "median-cut:16"; }), 0, 0, 1));
   EXPECT_TRUE(isOnly(change("mis",
                             [&] {
-                              d.lighting.strategy.name = "importance";
+                              d.lighting.strategy = "importance";
                               d.settings.mis = Mis::Power;
                             }),
                      0, 0, 1));
@@ -149,13 +148,13 @@ TEST(Session, UpdateRedoesWhatDiffers) {
   EXPECT_TRUE(isOnly(change("suns",
                             [&] {
                               d.probe.map = std::make_shared<const Image>(sunnyMap());
-                              d.lighting.strategy.name = "suns";
+                              d.lighting.strategy = "suns";
                             }),
                      0, 1, 1));
   EXPECT_TRUE(isOnly(change("angle of suns", [&] { d.lighting.sunAngle = 20; }), 0, 0, 1));
   EXPECT_TRUE(isOnly(change("own strategy",
                             [&] {
-                              d.lighting.strategy.name = "uniform";
+                              d.lighting.strategy = "uniform";
                               d.lighting.make = [](const Probe& probe) {
                                 return makeStrategy("importance", probe, Mis::Power, "test");
                               };
@@ -226,11 +225,11 @@ TEST(Session, TwoAtOnceDoNotDisturbEachOther) {
 
 TEST(Session, ErrorsAreThrownByWait) {
   RenderDescription d = stageDescription(Stage());
-  d.lighting.strategy.name = "none";
+  d.lighting.strategy = "none";
   Session session(d);
   session.start();
   EXPECT_THROW(session.wait(), InputError);
-  d.lighting.strategy.name = "uniform";
+  d.lighting.strategy = "uniform";
   session.update(d);
   session.start();
   EXPECT_EQ(session.wait().color().texels, freshRender(d));

@@ -5,7 +5,9 @@
 #include <bit>
 
 #include "approximate/gather_irradiance.h"
+#include "base/error.h"
 #include "base/parallel.h"
+#include "base/work_monitor.h"
 #include "scene/camera.h"
 #include "transport/first_surface.h"
 
@@ -179,14 +181,19 @@ void fillCache(IrradianceCache& cache, const PathTracer& tracer, const Camera& c
   CacheFiller filler(cache, tracer, camera, imageSize, seed);
   const double pixels = double(imageSize.x) * imageSize.y / (kFinest * kFinest);
   double tried = 0;
-  for (int spacing = kCoarsest; spacing >= kFinest; spacing /= 2) {
-    const std::vector<CachePoint> points = filler.pointsOf(spacing);
-    for (size_t i = 0; i < points.size() && !stop;) {
-      const size_t count = std::min(filler.groupSize(), points.size() - i);
-      filler.tryOut(std::span(points).subspan(i, count));
-      i += count, tried += double(count);
-      progress(std::min(tried / pixels, 1.0));
+  StopMonitor monitor(stop);
+  const MonitoredWork work(&monitor);
+  try {
+    for (int spacing = kCoarsest; spacing >= kFinest; spacing /= 2) {
+      const std::vector<CachePoint> points = filler.pointsOf(spacing);
+      for (size_t i = 0; i < points.size();) {
+        const size_t count = std::min(filler.groupSize(), points.size() - i);
+        filler.tryOut(std::span(points).subspan(i, count));
+        i += count, tried += double(count);
+        progress(std::min(tried / pixels, 1.0));
+      }
     }
+  } catch (const Interrupted&) {  // the records so far are whole
   }
 }
 

@@ -21,6 +21,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "base/work_monitor.h"
 
 namespace chromeball {
 
@@ -28,11 +29,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr size_t kReadAtOnce = 8 << 20;  // bytes
+
 // The system would take it for the file whose name ends there.
 void refuseNul(const fs::path& path) {
   if (path.native().find('\0') != std::string::npos)
     throwInput("{}: the file name contains U+0000", path.string());
 }
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  operator int() const { return number_; }
+
+ private:
+  const int number_;
+};
 
 }  // namespace
 
@@ -56,10 +73,12 @@ std::string lowerExtension(const fs::path& path) {
 
 std::vector<uint8_t> readFile(const fs::path& path) {
   checkReadable(path);
-  std::vector<uint8_t> bytes(fs::file_size(path));
+  std::vector<uint8_t> bytes = longArray<uint8_t>(fs::file_size(path));
   std::ifstream in(path, std::ios::binary);
-  if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size())))
-    throwInput("{}: cannot read the whole file", path.string());
+  forParts(bytes.size(), kReadAtOnce, [&](size_t begin, size_t end) {
+    if (!in.read(reinterpret_cast<char*>(bytes.data() + begin), std::streamsize(end - begin)))
+      throwInput("{}: cannot read the whole file", path.string());
+  });
   return bytes;
 }
 
@@ -68,18 +87,16 @@ FileBytes::FileBytes(const fs::path& path) {
   size_ = size_t(fs::file_size(path));
   data_.reset(new uint8_t[size_]);
   useLargePages(data_.get(), size_);
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  constexpr size_t kBlock = 8 << 20;
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
   std::atomic<bool> isWhole = file >= 0;
-  parallelFor(size_t(0), (size_ + kBlock - 1) / kBlock, [&](size_t block) {
-    const size_t end = std::min(size_, (block + 1) * kBlock);
-    for (size_t at = block * kBlock; at < end && isWhole;) {
+  parallelFor(size_t(0), (size_ + kReadAtOnce - 1) / kReadAtOnce, [&](size_t block) {
+    const size_t end = std::min(size_, (block + 1) * kReadAtOnce);
+    for (size_t at = block * kReadAtOnce; at < end && isWhole;) {
       const ssize_t count = pread(file, data_.get() + at, end - at, off_t(at));
       if (count > 0) at += size_t(count);
       if (count == 0 || (count < 0 && errno != EINTR)) isWhole = false;
     }
   });
-  if (file >= 0) close(file);
   if (!isWhole) throwInput("{}: cannot read the whole file", path.string());
 }
 

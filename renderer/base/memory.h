@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/work_monitor.h"
+
 namespace chromeball {
 
 // 0.8 times the machine's memory, or the process's limit if that is less. Bytes.
@@ -17,13 +19,15 @@ double memoryBudget();
 // effect where the system has no such pages.
 void useLargePages(void* data, size_t bytes);
 
+inline constexpr size_t kZeroedAtOnce = 8 << 20;  // bytes; some milliseconds
+
 // `count` zeros.
 template <class T>
 std::vector<T> longArray(size_t count) {
   std::vector<T> array;
   array.reserve(count);
   useLargePages(array.data(), count * sizeof(T));
-  array.resize(count);
+  forParts(count, kZeroedAtOnce / sizeof(T), [&](size_t, size_t end) { array.resize(end); });
   return array;
 }
 

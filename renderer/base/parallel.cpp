@@ -6,6 +6,8 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include "base/work_monitor.h"
+
 namespace chromeball {
 namespace {
 
@@ -14,14 +16,25 @@ using SizeRange = tbb::blocked_range<size_t>;
 }  // namespace
 
 void parallelRanges(size_t count, size_t size, RangeBody body) {
+  WorkMonitor* const monitor = currentMonitor();
   tbb::parallel_for(
-      SizeRange(0, count, size), [&](const SizeRange& range) { body(range.begin(), range.end()); },
+      SizeRange(0, count, size),
+      [&](const SizeRange& range) {
+        const MonitoredWork work(monitor);
+        endIfCancelled();
+        body(range.begin(), range.end());
+      },
       tbb::simple_partitioner());
 }
 
 void parallelAdaptiveRanges(size_t count, RangeBody body) {
-  tbb::parallel_for(SizeRange(0, count),
-                    [&](const SizeRange& range) { body(range.begin(), range.end()); });
+  WorkMonitor* const monitor = currentMonitor();
+  tbb::parallel_for(SizeRange(0, count), [&](const SizeRange& range) {
+    const MonitoredWork work(monitor);
+    if (!monitor) return body(range.begin(), range.end());
+    forParts(range.size(), 1,
+             [&](size_t begin, size_t end) { body(range.begin() + begin, range.begin() + end); });
+  });
 }
 
 struct ThreadSlots::Slots {

@@ -18,7 +18,7 @@ bool wants(const D& d, std::string_view layer) {
          std::ranges::any_of(d.settings.aovs, [&](Aov a) { return aovInfo(a).name == layer; });
 }
 bool approximates(const D& d) { return usesEnvironment(d.settings.integrator); }
-std::string strategyOf(const D& d) { return resolveStrategy(d.lighting.strategy.name); }
+std::string strategyOf(const D& d) { return resolveStrategy(d.lighting.strategy); }
 bool hasPlate(const D& d) {
   return d.composite && d.composite->mode != CompositeMode::ShadowCatcher;
 }
@@ -110,7 +110,7 @@ constexpr Feature kNotImportance{"another strategy than importance", "lighting.s
 constexpr Feature kNoLightSamples{"a strategy without light samples", "lighting.strategy",
                                   [](const D& d) { return strategyOf(d) == "bsdf"; }};
 constexpr Feature kNoLights{"a strategy without lights", "lighting.strategy",
-                            [](const D& d) { return !hasLights(d.lighting.strategy.name); }};
+                            [](const D& d) { return !hasLights(d.lighting.strategy); }};
 constexpr Feature kOneSample{"one sample per pixel", "render.samples",
                              [](const D& d) { return d.settings.samples < 2; }};
 constexpr Feature kNotEnvironmentMap{

@@ -8,11 +8,21 @@
 
 namespace chromeball {
 
-// "scene.toml:12" or "--samples" by the names of the table of settings ("render.samples"). A value
-// from memory is named by the name itself.
+// "sources[2]": the name of an entry of an array of the description.
+inline std::string elementName(std::string_view array, size_t index) {
+  return std::string(array) + "[" + std::to_string(index) + "]";
+}
+
+// "scene.toml:12" or "--samples" by the names of the table of settings ("render.samples"), and by
+// those of entries, which are their places in RenderDescription ("camera.lens", "sources[2]"). What
+// is from memory is named by the name itself.
 class Origins {
  public:
   void set(const std::string& name, const std::string& location) { locations_[name] = location; }
+  // All of the others; they take precedence.
+  void add(const Origins& others) {
+    for (const auto& [name, location] : others.locations_) set(name, location);
+  }
 
   // Whether someone has given the value; else it is a default, or a program's.
   bool has(std::string_view name) const { return locations_.contains(name); }

@@ -58,7 +58,7 @@ struct ProbeDescription {
 enum class LightFrom { All, Suns, Rest };
 
 struct LightingDescription {
-  NamedSetting strategy;
+  std::string strategy;
   LightFrom from = LightFrom::All;
   double lamps = 1;                // factor on the models' punctual lights
   std::optional<double> sunAngle;  // StrategyOptions::sunAngle
@@ -96,6 +96,7 @@ struct RunDescription {
   std::optional<double> writeEvery;  // seconds
   bool resumes = false;
   bool isOfFrames = false;  // others follow, of the same files
+  bool isWatched = false;   // snapshots are taken (session/session.h)
 };
 
 struct OutputDescription {

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "description/scene_entries.h"
 
-#include "base/error.h"
-
 namespace chromeball {
 
 Camera CameraEntry::relativeTo(const glm::dvec3& origin) const {
-  try {
-    Camera camera = Camera::lookAt(vec3(position - origin), vec3(target - origin), up, lens.fov);
-    camera.orthographic = lens.orthographic;
-    camera.halfHeight = lens.halfHeight;
-    return camera;
-  } catch (const InputError& error) {
-    throwInput("{}: {}", location, error.what());
-  }
+  Camera camera = Camera::lookAt(vec3(position - origin), vec3(target - origin), up, lens.fov);
+  camera.orthographic = lens.orthographic;
+  camera.halfHeight = lens.halfHeight;
+  return camera;
 }
 
 Surroundings SurroundingsEntry::relativeTo(const glm::dvec3& origin) const {

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "base/named_setting.h"
 #include "scene/camera.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/light.h"
@@ -27,8 +26,7 @@ struct ModelEntry {
 struct CameraEntry {
   glm::dvec3 position, target;
   vec3 up;
-  Camera lens;           // all but the place
-  std::string location;  // FILE:LINE, begins an error
+  Camera lens = {};  // all but the place
 
   // Throws InputError if position and target coincide or if up is parallel to the view.
   Camera relativeTo(const glm::dvec3& origin) const;
@@ -45,27 +43,24 @@ struct SurroundingsEntry {
 // A thin lens; applies to any perspective camera.
 struct Lens {
   float aperture, focus;  // diameter, and distance of the plane in focus: metres, > 0
-  std::string location;   // FILE:LINE, begins an error
 };
 
 // What distinguishes the image of a real lens from a pinhole's; applies to any perspective camera.
 struct Optics {
   std::optional<vec2> principalPoint;  // Camera::principalPoint
   Distortion distortion;
-  std::string location;  // FILE:LINE, begins an error
 };
 
 // The local scene of [composite], by node names; all other nodes are objects.
 struct CompositeEntry {
-  std::string location;  // of the section: FILE:LINE, begins an error
-  std::vector<NamedSetting> localScene;
+  std::vector<std::string> localScene;
   Rgb groundReflectance{0.25f};
   vec2 groundReflectanceRange{0.1f, 0.5f};
 };
 
 // A polygon of the probe that becomes a source of its own ([[source]]).
 struct SourceEntry {
-  std::string name, location;       // location: FILE:LINE, begins an error
+  std::string name;
   std::vector<glm::dvec2> corners;  // positions in the probe's image, in pixels from its top left
   bool isIllum = true;
 };

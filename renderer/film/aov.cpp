@@ -137,6 +137,15 @@ void AovFilm::copyPixels(const AovFilm& from, const PixelRect& rect) {
   rect.copy(from.hits_, hits_, width_);
 }
 
+AovFilm AovFilm::part(const PixelRect& rect) const {
+  AovFilm part(rect.width, rect.height, {});
+  for (const Sum& sum : sums_)
+    part.sums_.push_back({sum.aov, sum.channels, rect.of(sum.sums, width_, size_t(sum.channels))});
+  part.samples_ = rect.of(samples_, width_);
+  part.hits_ = rect.of(hits_, width_);
+  return part;
+}
+
 void AovFilm::archive(Archive& a, Rows rows) {
   if (empty()) return;
   for (Sum& sum : sums_) a.items(rows.of(sum.sums, size_t(width_ * sum.channels)));

@@ -85,9 +85,10 @@ class AovFilm {
   void add(int x, int y, const FirstHit& first);
   void add(int x, int y, Defect defect);
 
-  // As Film::add(), copyPixels() and archive(). Of indices, this film's stay.
+  // As Film::add(), copyPixels(), part() and archive(). Of indices, this film's stay.
   void add(const AovFilm& part, int x, int y);
   void copyPixels(const AovFilm& from, const PixelRect& rect);
+  AovFilm part(const PixelRect& rect) const;
   void archive(Archive& a, Rows rows);
 
   Image finished(Aov aov) const;

@@ -64,6 +64,14 @@ void Film::copyPixels(const Film& from, const PixelRect& rect) {
   if (isWeighed()) rect.copy(from.early_, early_, width_);
 }
 
+Film Film::part(const PixelRect& rect) const {
+  Film part(0, 0);
+  part.width_ = rect.width, part.height_ = rect.height;
+  part.pixels_ = rect.of(pixels_, width_);
+  part.early_ = rect.of(early_, width_);
+  return part;
+}
+
 void Film::archive(Archive& a, Rows rows) {
   a.items(rows.of(pixels_, size_t(width_)));
   if (isWeighed()) a.items(rows.of(early_, size_t(width_)));

@@ -58,6 +58,7 @@ class Film {
   void beWeighed() { early_.resize(pixels_.size()); }
   // Takes these pixels of a film of the same size, weighed as this one.
   void copyPixels(const Film& from, const PixelRect& rect);
+  Film part(const PixelRect& rect) const;
   void archive(Archive& a, Rows rows);
 
   Image mean() const;            // RGB radiance

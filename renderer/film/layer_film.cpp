@@ -52,6 +52,14 @@ void LayerFilm::add(const LayerFilm& part, int left, int top) {
       }
 }
 
+LayerFilm LayerFilm::part(const PixelRect& rect) const {
+  LayerFilm part(rect.width, rect.height, {});
+  part.layers_ = layers_, part.halves_ = halves_;
+  part.counts_ = rect.of(counts_, width_, size_t(halves_));
+  part.values_ = rect.of(values_, width_, size_t(halves_) * layers_.size());
+  return part;
+}
+
 void LayerFilm::copyPixels(const LayerFilm& from, const PixelRect& rect) {
   if (empty()) return;
   rect.copy(from.counts_, counts_, width_, size_t(halves_));

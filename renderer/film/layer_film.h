@@ -33,9 +33,10 @@ class LayerFilm {
   // afterwards.
   void addMeans(const LayerFilm& other);
 
-  // As Film::add() and archive(). Both films have the same layers.
+  // As Film::add(), part() and archive(). Both films have the same layers.
   void add(const LayerFilm& part, int x, int y);
   void copyPixels(const LayerFilm& from, const PixelRect& rect);
+  LayerFilm part(const PixelRect& rect) const;
   void archive(Archive& a, Rows rows);
 
   uint32_t count(int x, int y) const;  // samples
@@ -76,10 +77,15 @@ class FeatureFilm {
   void add(int x, int y, int half, const FirstHit& first, const Rgb& radiance);
   // As Film::weigh().
   void weigh(double weight);
-  // As Film::add() and archive().
+  // As Film::add(), part() and archive().
   void add(const FeatureFilm& part, int x, int y);
   void copyPixels(const FeatureFilm& from, const PixelRect& rect) {
     if (!empty()) rect.copy(from.pixels_, pixels_, width_);
+  }
+  FeatureFilm part(const PixelRect& rect) const {
+    FeatureFilm part(rect.width, rect.height, false);
+    part.pixels_ = rect.of(pixels_, width_);
+    return part;
   }
   void archive(Archive& a, Rows rows) {
     if (!empty()) a.items(rows.of(pixels_, size_t(width_)));

@@ -32,6 +32,20 @@ struct PixelRect {
                   to.begin() + ptrdiff_t(first));
     }
   }
+
+  // The items of these pixels alone.
+  template <class T>
+  std::vector<T> of(const std::vector<T>& items, int across, size_t perPixel = 1) const {
+    std::vector<T> part;
+    if (items.empty()) return part;
+    part.reserve(size_t(width) * size_t(height) * perPixel);
+    for (int row = y; row < y + height; ++row) {
+      const auto first =
+          items.begin() + ptrdiff_t((size_t(row) * size_t(across) + size_t(x)) * perPixel);
+      part.insert(part.end(), first, first + ptrdiff_t(size_t(width) * perPixel));
+    }
+    return part;
+  }
 };
 
 // Some megabytes of sums each.

@@ -14,21 +14,25 @@ namespace {
 // Applies the settings that are stored per model.
 void applyToModels(const Settings& over, SceneFile& file) {
   const Settings& all = file.settings;
-  for (ModelEntry& model : file.models) {
-    GltfChoice& choice = model.choice;
+  for (size_t i = 0; i < file.models.size(); ++i) {
+    GltfChoice& choice = file.models[i].choice;
+    const std::string animation = elementName("models", i) + ".choice.animation";
     for (const char* name : {"model.time", "model.animation"})
       if (over.has(name)) {
         if (!choice.animation) choice.animation.emplace();
         choice.animation->ifAny =
             (all.has("frames") || !file.probeTurns.empty()) && !over.has("model.animation");
-        if (choice.animation->location.empty() || name == std::string_view("model.animation"))
-          choice.animation->location = over.location(name);
+        if (!file.origins.has(animation) || name == std::string_view("model.animation"))
+          file.origins.set(animation, over.location(name));
       }
     if (const auto time = over.getIfGiven<double>("model.time")) choice.animation->seconds = *time;
     if (const auto name = over.getIfGiven<std::string>("model.animation"))
       choice.animation->name = *name;
-    if (const auto variant = over.getIfGiven<std::string>("model.variant"))
-      choice.variant = {*variant, over.location("model.variant")};
+    if (const auto variant = over.getIfGiven<std::string>("model.variant")) {
+      choice.variant = {.name = *variant};
+      file.origins.set(elementName("models", i) + ".choice.variant",
+                       over.location("model.variant"));
+    }
     choice.lightUnits = parseLightUnits(
         {all.get<std::string>("lighting.light_units"), all.location("lighting.light_units")});
     if (all.get<bool>("allow-external")) choice.external = ExternalFiles::Allow;
@@ -76,11 +80,14 @@ void applyShadowCatcher(SceneFile& file) {
   if (file.composite)
     throwInput("{}: the scene file has [composite]; give it mode = \"shadow-catcher\"", location);
   file.settings.set("composite.mode", std::string("shadow-catcher"), location);
-  file.composite.emplace().location = location;
+  std::vector<std::string>& localScene = file.composite.emplace().localScene;
+  file.origins.set("composite.entry", location);
   std::istringstream names(*nodes);
-  for (std::string name; std::getline(names, name, ',');)
-    file.composite->localScene.push_back({name, location});
-  if (file.composite->localScene.empty()) throwInput("{}: names no node", location);
+  for (std::string name; std::getline(names, name, ',');) {
+    file.origins.set(elementName("composite.entry.localScene", localScene.size()), location);
+    localScene.push_back(name);
+  }
+  if (localScene.empty()) throwInput("{}: names no node", location);
 }
 
 }  // namespace

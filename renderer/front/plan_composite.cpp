@@ -62,7 +62,7 @@ void planPlate(const Settings& s, RenderDescription& description) {
   if (std::ranges::count(composite.layers, "reflectance") > 0 &&
       composite.reflectance == Reflectance::Model)
     throwInput("{}: layer `reflectance` needs reflectance = \"plate\" or \"flat\" in [composite]",
-               composite.entry.location);
+               description.origins.of("composite.entry"));
 }
 
 }  // namespace

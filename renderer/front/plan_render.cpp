@@ -50,10 +50,6 @@ SingleSided singleSidedNamed(const std::string& name) {
                            : SingleSided::Camera;
 }
 
-NamedSetting named(const Settings& settings, std::string_view name) {
-  return {settings.get<std::string>(name), settings.location(name)};
-}
-
 // The layers of plain renders; those of composites are in CompositeDescription.
 std::vector<Aov> layersOf(const SceneFile& file) {
   std::vector<Aov> layers;
@@ -170,7 +166,7 @@ ProbeDescription plannedProbe(const SceneFile& file) {
 
 LightingDescription plannedLighting(const Settings& s) {
   const auto from = s.get<std::string>("lighting.from");
-  return {.strategy = named(s, "lighting.strategy"),
+  return {.strategy = s.get<std::string>("lighting.strategy"),
           .from = from == "suns"   ? LightFrom::Suns
                   : from == "rest" ? LightFrom::Rest
                                    : LightFrom::All,
@@ -227,6 +223,7 @@ RenderDescription planJob(SceneFile scene, const Settings& over) {
   for (const Setting& setting : settingTable())
     if (const auto* given = s.find(setting.name()))
       job.origins.set(setting.name(), given->location);
+  job.origins.add(scene.origins);
   job.camera = plannedCamera(scene);
   job.probe = plannedProbe(scene);
   if (scene.plateScale) job.origins.set("probe.scale", *scene.plateScale);

@@ -33,7 +33,8 @@ vec3 readScale(const Entry& entry) {
   return scale;
 }
 
-ModelEntry readModel(const Entry& entry) {
+// `name`: of the model in the description.
+ModelEntry readModel(const Entry& entry, const std::string& name, Origins& origins) {
   if (entry.node->is_string()) return {existingFile(entry), {}, {}};
   if (!entry.node->is_table()) entry.mustBe("a file name or a table");
   const Section model(entry.file, "model", *entry.node->as_table());
@@ -51,11 +52,14 @@ ModelEntry readModel(const Entry& entry) {
   const Entry animation = model["animation"], time = model["time"];
   if (animation || time) {
     AnimationTime& when = result.choice.animation.emplace();
-    when.location = (animation ? animation : time).location();
+    origins.set(name + ".choice.animation", (animation ? animation : time).location());
     if (animation) when.name = animation.text();
     if (time) when.seconds = time.number();
   }
-  if (const Entry e = model["variant"]) result.choice.variant = {e.text(), e.location()};
+  if (const Entry e = model["variant"]) {
+    result.choice.variant = {.name = e.text()};
+    origins.set(name + ".choice.variant", e.location());
+  }
   return result;
 }
 
@@ -96,7 +100,10 @@ SceneFile readSceneFile(const std::string& path) {
   SceneFile scene;
   scene.path = path;
   scene.plateScale = plateScale;
-  forEach(root["model"], [&](const Entry& e) { scene.models.push_back(readModel(e)); });
+  forEach(root["model"], [&](const Entry& e) {
+    const std::string name = elementName("models", scene.models.size());
+    scene.models.push_back(readModel(e, name, scene.origins));
+  });
   if (scene.models.empty()) throwInput("{}: no `model`; name a .gltf or .glb file", path);
   for (const char* section : {"camera", "probe", "lighting", "render", "output"})
     root.section(section).read(scene.settings);
@@ -105,11 +112,8 @@ SceneFile readSceneFile(const std::string& path) {
   forEach(root["light"], [&](const Entry& e) {
     for (Lamp& lamp : readLamps(e, scene.lightLists)) scene.lamps.push_back(std::move(lamp));
   });
-  forEach(root["source"], [&](const Entry& e) {
-    for (SourceEntry& source : readSources(e, scene.lightLists))
-      scene.sources.push_back(std::move(source));
-  });
-  if (root["composite"]) scene.composite = readComposite(root.section("composite"), scene.settings);
+  forEach(root["source"], [&](const Entry& e) { readSources(e, scene); });
+  if (root["composite"]) readComposite(root.section("composite"), scene);
   if (root["surroundings"]) scene.surroundings = readSurroundings(root.section("surroundings"));
   return scene;
 }

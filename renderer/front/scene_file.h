@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "description/origins.h"
 #include "description/scene_entries.h"
 #include "front/settings.h"
 
@@ -32,6 +33,7 @@ struct SceneFile {
   std::optional<CompositeEntry> composite;
   std::optional<std::string> plateScale;  // location of `[probe] scale = "plate"`
   std::optional<SurroundingsEntry> surroundings;
+  Origins origins;                    // of the entries above
   std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
 };
 

@@ -23,14 +23,15 @@ void readLens(const Section& camera, SceneFile& scene) {
   if (!aperture || !focus)
     failAt((aperture ? aperture : focus).location(),
            "`aperture` (the lens's diameter) and `focus` (a distance) go together, in metres");
-  scene.lens = {float(aperture.number()), float(focus.number()), aperture.location()};
+  scene.lens = {float(aperture.number()), float(focus.number())};
+  scene.origins.set("camera.lens", aperture.location());
 }
 
 void readOptics(const Section& camera, SceneFile& scene) {
   const Entry point = camera["principal_point"], distortion = camera["distortion"];
   if (!point && !distortion) return;
   Optics& optics = scene.optics.emplace();
-  optics.location = (distortion ? distortion : point).location();
+  scene.origins.set("camera.optics", (distortion ? distortion : point).location());
   if (point) {
     if (!point.isArrayOf(2)) point.mustBe(point.setting->form);
     optics.principalPoint = vec2(point.element(0).number(), point.element(1).number());
@@ -64,13 +65,17 @@ void readPlace(const Section& camera, SceneFile& scene) {
   entry.position = position.point();
   entry.target = target.point();
   entry.up = up;
-  entry.location = camera.location();
+  scene.origins.set("camera.placed", camera.location());
   entry.lens.fov = fov;
   if (orthographic) {
     entry.lens.orthographic = true;
     entry.lens.halfHeight = 0.5f * float(orthographic.number());
   }
-  entry.relativeTo(entry.position);  // throws
+  try {
+    entry.relativeTo(entry.position);
+  } catch (const InputError& error) {
+    failAt(camera.location(), "{}", error.what());
+  }
 }
 
 }  // namespace

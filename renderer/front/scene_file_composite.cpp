@@ -17,25 +17,29 @@ void readGround(const Section& section, CompositeEntry& composite) {
 
 }  // namespace
 
-CompositeEntry readComposite(const Section& section, Settings& settings) {
+void readComposite(const Section& section, SceneFile& scene) {
+  Settings& settings = scene.settings;
   section.read(settings);
   if (!isShadowCatcher(settings)) section.required("plate");
-  CompositeEntry composite;
-  composite.location = section.location();
+  CompositeEntry& composite = scene.composite.emplace();
+  scene.origins.set("composite.entry", section.location());
   const bool hasGround = settings.get<bool>("composite.ground");
   const Entry local = section["local_scene"];
   if (!local && !hasGround)
-    failAt(composite.location,
+    failAt(section.location(),
            "[composite] has no `local_scene`; name its nodes, or give "
            "`ground = true` for a plane");
-  forEach(local, [&](const Entry& e) { composite.localScene.push_back(e.name()); });
+  forEach(local, [&](const Entry& e) {
+    scene.origins.set(elementName("composite.entry.localScene", composite.localScene.size()),
+                      e.location());
+    composite.localScene.push_back(e.text());
+  });
   if (local && composite.localScene.empty())
     failAt(local.location(), "`local_scene` must name at least one node");
   for (const char* key : {"ground_height", "ground_reflectance", "ground_reflectance_range"})
     if (const Entry e = section[key]; e && !hasGround)
       failAt(e.location(), "`{}` needs `ground = true`", key);
   readGround(section, composite);
-  return composite;
 }
 
 SurroundingsEntry readSurroundings(const Section& section) {

@@ -7,8 +7,8 @@
 
 namespace chromeball {
 
-// Scalar keys go to `settings`. Both throw InputError.
-CompositeEntry readComposite(const Section& section, Settings& settings);
+// Both throw InputError.
+void readComposite(const Section& section, SceneFile& scene);
 SurroundingsEntry readSurroundings(const Section& section);
 
 }  // namespace chromeball

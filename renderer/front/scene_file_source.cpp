@@ -21,31 +21,34 @@ PolygonCorners readCorners(const Entry& entry) {
 
 }  // namespace
 
-std::vector<SourceEntry> readSources(const Entry& entry, std::vector<std::string>& files) {
+void readSources(const Entry& entry, SceneFile& scene) {
   if (!entry.node->is_table()) entry.mustBe("a table, [[source]]");
   const Section source(entry.file, "source", *entry.node->as_table());
   const Entry polygon = source["probe_polygon"], file = source["file"];
   if (!polygon == !file)
     failAt(source.location(), "[[source]] needs either `probe_polygon` or `file`");
   SourceEntry common;
-  common.location = source.location();
   common.name = source["name"] ? source["name"].text() : "source";
   if (const Entry illum = source["illum"]) common.isIllum = illum.flag();
   if (const Entry offset = source["offset"]) offset.number();
-  std::vector<SourceEntry> sources;
-  if (polygon) {
-    sources.push_back(common);
-    sources.back().corners = readCorners(polygon);
-    return sources;
-  }
-  files.push_back(existingFile(file));
-  for (const PolygonCorners& corners : readPolygons(files.back())) {
-    SourceEntry& added = sources.emplace_back(common);
-    added.name += fmt::format("_{}", sources.size() - 1);
+  const auto add = [&](const PolygonCorners& corners, const std::string& location) {
+    scene.origins.set(elementName("sources", scene.sources.size()), location);
+    SourceEntry& added = scene.sources.emplace_back(common);
     added.corners = corners;
-    added.location = fmt::format("{}: polygons[{}]", files.back(), sources.size() - 1);
+    return &added;
+  };
+  if (polygon) {
+    add(readCorners(polygon), source.location());
+    return;
   }
-  return sources;
+  const std::string path = existingFile(file);
+  scene.lightLists.push_back(path);
+  size_t i = 0;
+  for (const PolygonCorners& corners : readPolygons(path)) {
+    add(corners, fmt::format("{}: {}", path, elementName("polygons", i)))->name +=
+        fmt::format("_{}", i);
+    ++i;
+  }
 }
 
 }  // namespace chromeball

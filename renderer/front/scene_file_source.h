@@ -7,8 +7,7 @@
 
 namespace chromeball {
 
-// Reads one table: a polygon, or the polygons of a file (polygon_file.h), whose path is added to
-// `files`. Throws InputError.
-std::vector<SourceEntry> readSources(const Entry& entry, std::vector<std::string>& files);
+// Reads one table: adds a polygon, or the polygons of a file (polygon_file.h). Throws InputError.
+void readSources(const Entry& entry, SceneFile& scene);
 
 }  // namespace chromeball

@@ -42,8 +42,7 @@ struct Entry {
   bool isArray() const { return node->is_array(); }
   bool isArrayOf(size_t count) const { return isArray() && node->as_array()->size() == count; }
 
-  std::string text() const;  // not empty, without U+0000
-  NamedSetting name() const { return {text(), location()}; }
+  std::string text() const;    // not empty, without U+0000
   std::string choice() const;  // one of the setting's choices
   bool flag() const;
   uint64_t integer() const;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/work_monitor.h"
 
 namespace chromeball {
 namespace {
@@ -17,6 +18,7 @@ constexpr double kMinCompensated = 1e-3;
 double meanLuminance(const Probe& probe) {
   double sum = 0, weight = 0;
   for (int row = 0; row < probe.height(); ++row) {
+    endIfCancelled();
     const double sine = std::sin(kPiD * (row + 0.5) / probe.height());
     double rowSum = 0;
     for (int x = 0; x < probe.width(); ++x) rowSum += luminance(probe.corners(x, row).c01);

@@ -3,10 +3,14 @@
 
 #include <cassert>
 
+#include "base/memory.h"
+
 namespace chromeball {
 
 CdfRows::CdfRows(int rows, int columns)
-    : columns_(columns), cdf_(size_t(rows) * (columns + 1)), guide_(size_t(rows) * (kGuide + 1)) {}
+    : columns_(columns),
+      cdf_(longArray<double>(size_t(rows) * (columns + 1))),
+      guide_(size_t(rows) * (kGuide + 1)) {}
 
 double CdfRows::setRow(int row, std::span<const double> weights) {
   assert(int(weights.size()) == columns_);

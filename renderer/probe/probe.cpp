@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace chromeball {
@@ -22,7 +23,7 @@ Probe::Probe(const Image& latLong, const Rotation& rotation, const Rgb& scale)
       height_(latLong.height),
       rotation_(rotation),
       turn_(rotation),
-      grid_(size_t(width_ + 1) * (height_ + 2)) {
+      grid_(longArray<Rgb>(size_t(width_ + 1) * (height_ + 2))) {
   if (!isFinite(scale) || std::min({scale.x, scale.y, scale.z}) < 0)
     throwInput("probe: the scale {} should be finite and not negative", text(scale));
 
@@ -56,8 +57,9 @@ Probe::Probe(const Image& latLong, const Rotation& rotation, const Rgb& scale)
 
 Image Probe::latLong() const {
   Image image(width_, height_, 3);
-  for (int y = 0; y < height_; ++y)
+  forRows(width_, height_, [&](int y) {
     for (int x = 0; x < width_; ++x) image.setRgb(x, y, corners(x, y + 1).c00);
+  });
   return image;
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "render/render.h"
 #include "render/tile_grid.h"
@@ -13,16 +15,17 @@
 namespace chromeball {
 
 // The threads that render go on while the result is copied: of a tile that one of them works on,
-// what was copied before stays.
+// what was copied before stays. What nobody asks for costs nothing.
 class LiveResult {
  public:
   // For the thread that watches: the result so far, up to date but for tiles in work, and valid
-  // until the next call; null before the render begins.
-  const RenderResult* update();
+  // until the next call; null before the render begins. `changed`: tiles that differ from the last
+  // call's, of TileGrid.
+  const RenderResult* update(std::vector<size_t>& changed);
 
   // For the render. `result` must outlive the time until end(); an interrupted render may begin
-  // again.
-  void begin(const RenderResult& result);
+  // again. `makeEmpty`: a result of the same size and layers; it is called before end().
+  void begin(const RenderResult& result, std::function<RenderResult()> makeEmpty);
   void end();
   // While it exists, nothing is copied: for changes of totals, and of the whole film, which
   // replaced() tells.
@@ -34,16 +37,18 @@ class LiveResult {
 
  private:
   struct Tile {
-    std::atomic<bool> isBusy = false;  // being worked on, or being copied
-    std::atomic<bool> hasChanged = false;
+    std::atomic<bool> isBusy = false;      // being worked on, or being copied
+    std::atomic<bool> hasChanged = false;  // since it was copied
   };
-  void copy(bool all);
+  void copy();
 
   std::mutex changing_;
   const RenderResult* source_ = nullptr;
+  std::function<RenderResult()> makeEmpty_;
   TileGrid grid_{0, 0};
   std::unique_ptr<Tile[]> tiles_;
-  bool isReplaced_ = false;  // all that was copied before is of no use
+  bool isReplaced_ = false;      // all that was copied before is of no use
+  std::vector<size_t> changed_;  // since the last update()
   std::optional<RenderResult> copy_;
 };
 

@@ -5,7 +5,9 @@
 #include <cassert>
 #include <mutex>
 
+#include "base/error.h"
 #include "base/parallel.h"
+#include "base/work_monitor.h"
 #include "render/guide_training.h"
 #include "render/live_result.h"
 #include "render/pixel_renderer.h"
@@ -223,6 +225,15 @@ void RenderResult::copyPixels(const RenderResult& from, const PixelRect& rect) {
   features.copyPixels(from.features, rect);
 }
 
+RenderResult::RenderResult(const RenderResult& whole, const PixelRect& rect)
+    : film(whole.film.part(rect)),
+      aovs(whole.aovs.part(rect)),
+      layers(whole.layers.part(rect)),
+      groups(whole.groups),
+      features(whole.features.part(rect)) {}
+
+RenderResult RenderResult::part(const PixelRect& rect) const { return {*this, rect}; }
+
 void RenderResult::copyTotals(const RenderResult& from) {
   groups = from.groups;
   rays = from.rays;
@@ -279,8 +290,15 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
   Renderer renderer(integrator, world, camera, settings, state, live);
   state.result.groups = integrator.groups();
   state.result.isRepeated = settings.shard.index > 0 && settings.shard.repeated > 0;
-  if (!control || !control->restore(state)) renderer.tracePhotons();
-  if (live) live->begin(state.result);
+  if (!control || !control->restore(state)) {
+    StopMonitor monitor(stop);
+    const MonitoredWork work(&monitor);
+    try {
+      renderer.tracePhotons();
+    } catch (const Interrupted&) {  // no pass begins
+    }
+  }
+  if (live) live->begin(state.result, [&] { return RenderResult(settings, integrator.layers()); });
   try {
     renderPasses(renderer, state, progress, stop, control);
   } catch (...) {

@@ -29,6 +29,8 @@ struct RenderResult {
   // Takes the pixels, or all else, of a result of the same settings.
   void copyPixels(const RenderResult& from, const PixelRect& rect);
   void copyTotals(const RenderResult& from);
+  // These pixels alone, with the names of the groups.
+  RenderResult part(const PixelRect& rect) const;
 
   // The totals, then the pixels in bands (film/rows.h).
   void archive(Archive& a);
@@ -50,6 +52,9 @@ struct RenderResult {
   size_t guidedRegions = 0;   // of the light guide; 0: light samples were not guided
   float causticFraction = 0;  // of bounces in caustics: guided (CausticGuide::fraction())
   bool interrupted = false;
+
+ private:
+  RenderResult(const RenderResult& whole, const PixelRect& rect);
 };
 
 // What approximate renders use and other renders may use again.

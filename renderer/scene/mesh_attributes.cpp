@@ -7,7 +7,9 @@
 #include <mutex>
 #include <utility>
 
+#include "base/memory.h"
 #include "base/parallel.h"
+#include "base/work_monitor.h"
 #include "scene/transform.h"
 
 namespace chromeball {
@@ -18,8 +20,10 @@ using glm::dvec3;
 template <class T>
 void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
   if (array.empty()) return;
-  std::vector<T> gathered(source.size());
-  for (size_t i = 0; i < source.size(); ++i) gathered[i] = array[source[i]];
+  auto gathered = longArray<T>(source.size());
+  forRanges(source.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) gathered[i] = array[source[i]];
+  });
   array = std::move(gathered);
 }
 
@@ -211,13 +215,17 @@ struct VertexFrame {
   }
 };
 
+constexpr size_t kTrianglesAtOnce = 1 << 14;  // in some milliseconds
+
 }  // namespace
 
 void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
   const size_t vertexCount = mesh.positions.size();
-  std::vector<std::array<VertexFrame, 2>> frames(vertexCount);
+  auto frames = longArray<std::array<VertexFrame, 2>>(vertexCount);
   std::vector<Winding> windings;
+  windings.reserve(mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
+    if (windings.size() % kTrianglesAtOnce == 0) endIfCancelled();
     const Contribution c = contributionOf(mesh, uv, t);
     windings.push_back(c.winding);
     if (c.winding == kUndefined) continue;
@@ -228,6 +236,7 @@ void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
   std::vector<uint32_t> source(vertexCount), copy(vertexCount);
   for (uint32_t i = 0; i < vertexCount; ++i) source[i] = copy[i] = i;
   for (uint32_t i = 0; i < vertexCount; ++i) {
+    if (i % kTrianglesAtOnce == 0) endIfCancelled();
     if (!frames[i][kClockwise].isUsed || !frames[i][kCounter].isUsed) continue;
     copy[i] = uint32_t(source.size());
     source.push_back(i);
@@ -237,8 +246,9 @@ void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
       for (int k = 0; k < 3; ++k) mesh.triangles[i][k] = copy[mesh.triangles[i][k]];
   gatherVertices(mesh, source);
 
-  mesh.tangents.resize(source.size());
+  mesh.tangents = longArray<vec4>(source.size());
   for (uint32_t i = 0; i < source.size(); ++i) {
+    if (i % kTrianglesAtOnce == 0) endIfCancelled();
     const std::array<VertexFrame, 2>& both = frames[source[i]];
     const VertexFrame& frame =
         both[i >= vertexCount || !both[kClockwise].isUsed ? kCounter : kClockwise];

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/work_monitor.h"
+
 namespace chromeball {
 namespace {
 
@@ -64,6 +66,7 @@ TexelGrid halvedEvenly(const TexelGrid& grid, bool srgb) {
     return uint8_t((a + b + c + d + 2) / 4);
   };
   for (int y = 0; y < half.height; ++y) {
+    endIfCancelled();
     const auto* above = &grid.texels8[size_t(2 * y) * size_t(grid.width)];
     const auto* below = above + grid.width;
     auto* out = &half.texels8[size_t(y) * size_t(half.width)];
@@ -96,7 +99,8 @@ TexelGrid halved(const TexelGrid& grid, bool srgb, bool weightedByAlpha) {
   const size_t count = size_t(half.width) * size_t(half.height);
   const bool is8 = !grid.texels8.empty();
   is8 ? half.texels8.reserve(count) : half.texelsFloat.reserve(count);
-  for (const Cover& row : rows)
+  for (const Cover& row : rows) {
+    endIfCancelled();
     for (const Cover& column : columns) {
       vec4 mean(0);
       Rgb weighted(0);  // by alpha
@@ -117,6 +121,7 @@ TexelGrid halved(const TexelGrid& grid, bool srgb, bool weightedByAlpha) {
         for (int k = 0; k < 3; ++k) mean[k] = float(encodeSrgb(mean[k]));
       half.texelsFloat.push_back(mean);
     }
+  }
   return half;
 }
 

@@ -11,7 +11,11 @@ namespace {
 
 Camera chooseWithoutLens(const RenderDescription& job, const Scene& scene,
                          const AutomaticView& view) {
-  if (job.camera.placed) return job.camera.placed->relativeTo(view.origin);
+  if (const auto& placed = job.camera.placed) try {
+      return placed->relativeTo(view.origin);
+    } catch (const InputError& error) {
+      throwInput("{}: {}", job.origins.of("camera.placed"), error.what());
+    }
   if (const auto& wanted = job.camera.name) {
     std::vector<std::string_view> names;
     for (const auto name : {&Camera::name, &Camera::node})
@@ -32,7 +36,7 @@ Camera withLens(const RenderDescription& job, Camera camera) {
   if (!lens) return camera;
   if (camera.orthographic)
     throwInput("{}: an orthographic camera has no lens; leave out `aperture` and `focus`",
-               lens->location);
+               job.origins.of("camera.lens"));
   camera.lensRadius = 0.5f * lens->aperture;
   camera.focus = lens->focus;
   return camera;
@@ -44,7 +48,7 @@ Camera withOptics(const RenderDescription& job, Camera camera) {
   if (camera.orthographic)
     throwInput(
         "{}: an orthographic camera has no lens; leave out `principal_point` and `distortion`",
-        optics->location);
+        job.origins.of("camera.optics"));
   if (optics->principalPoint) camera.principalPoint = *optics->principalPoint;
   camera.distortion = optics->distortion;
   return camera;

@@ -122,6 +122,14 @@ struct Difference {
   PixelErrors errors;
 };
 
+std::vector<Layer> compositeLayers(const CompositeFinish& composite, const Image& color,
+                                   const RenderResult& result, const Image& variance) {
+  std::vector<Layer> layers{{"", composite.isShadowCatcher() ? "RGBA" : "RGB", color}};
+  for (const std::string& name : composite.layers)
+    layers.push_back(compositeLayerOf(name, composite, result, variance));
+  return layers;
+}
+
 FinishedImage finishComposite(const FinishPlan& plan, const RenderResult& result,
                               Difference difference, const Progress& progress,
                               const std::atomic<bool>& stop) {
@@ -139,11 +147,8 @@ FinishedImage finishComposite(const FinishPlan& plan, const RenderResult& result
   finished.composite->coverage = meanAlpha(film);
   finished.composite->darkerThanBlack = composed.darkerThanBlack;
   finished.image.placement = placementOf(plan.settings);
-  finished.image.layers.push_back(
-      {"", composite.isShadowCatcher() ? "RGBA" : "RGB", composed.color});
-  for (const std::string& name : composite.layers)
-    finished.image.layers.push_back(
-        compositeLayerOf(name, composite, result, finished.noise.variance));
+  finished.image.layers =
+      compositeLayers(composite, composed.color, result, finished.noise.variance);
   if (plan.settings.denoisesAtEnd() && !result.interrupted)
     finished.denoised = addDenoised(
         [&](const Progress& part) {
@@ -252,6 +257,21 @@ FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const P
         addDenoised([&](const Progress& part) { return denoiseRender(result, part, stop); },
                     finished.noise.noise, progress, finished.image);
   return finished;
+}
+
+OutputImage imageOf(const FinishPlan& plan, const RenderResult& result) {
+  OutputImage image;
+  if (const auto& composite = plan.composite)
+    image.layers = compositeLayers(*composite,
+                                   compose(DifferentialFilm(result.layers), result.film.mean(),
+                                           composite->plate, composite->mode)
+                                       .color,
+                                   result, {});
+  else
+    image = assemble(result, plan, {});
+  image.placement = placementOf(plan.settings);
+  std::erase_if(image.layers, [](const Layer& layer) { return layer.image.empty(); });
+  return image;
 }
 
 FinishedImage finishComposite(const FinishPlan& plan, const CompositeRender& render,

@@ -64,6 +64,9 @@ struct FinishedImage {
 // fractions from kRenderShare to 1 then.
 FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const Progress& progress,
                      const std::atomic<bool>& stop);
+// The same without denoising, and without what is estimated from many pixels: the noise and the
+// layer `variance`. `result` may be a part of the image's, unless it is a composite.
+OutputImage imageOf(const FinishPlan& plan, const RenderResult& result);
 // Of a composite of two passes.
 FinishedImage finishComposite(const FinishPlan& plan, const CompositeRender& render,
                               const Progress& progress, const std::atomic<bool>& stop);

@@ -18,8 +18,7 @@ void FrameScene::show(const RenderDescription& job) {
   }
   if (!change.lighting) return;
   prepared_.lighting = makeLighting(*loaded_);
-  prepared_.environment =
-      makeEnvironment(job.settings.integrator, job.lighting.strategy.name, *loaded_);
+  prepared_.environment = makeEnvironment(job.settings.integrator, job.lighting.strategy, *loaded_);
 }
 
 void FrameScene::load(const RenderDescription& job) {

@@ -40,7 +40,7 @@ Messages checkOutputs(const RenderDescription& job) {
   const bool isForLens =
       job.output.develop.lens && job.output.layers == std::vector<std::string>{"depth"};
   if (!has(".exr") && !isForLens) warn("output.aovs", "only an .exr holds layers");
-  if (const std::string strategy = resolveStrategy(job.lighting.strategy.name);
+  if (const std::string strategy = resolveStrategy(job.lighting.strategy);
       !strategy.starts_with("suns"))
     warn("lighting.sun_angle", fmt::format("the strategy is {}; only suns has discs", strategy));
   return messages;

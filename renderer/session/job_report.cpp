@@ -70,7 +70,7 @@ json statistics(const LoadedScene& loaded, const JobResult& result, const PhaseS
       {"command", commandLine()},
       {"job", describeJob(loaded)},
       {"scene", job.path},
-      {"strategy", resolveStrategy(job.lighting.strategy.name)},
+      {"strategy", resolveStrategy(job.lighting.strategy)},
       {"seed", job.settings.seed},
       {"max_depth", job.settings.maxDepth},
       {"max_transmission_depth", job.settings.maxTransmissionDepth},

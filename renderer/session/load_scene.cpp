@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "base/error.h"
+#include "base/work_monitor.h"
 #include "description/capabilities.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/model_cache.h"
@@ -85,21 +86,24 @@ void replaceFile(const std::optional<std::string>& earlier, const std::optional<
   }
 }
 
-// The probe, if it has turned or is another one.
-void replaceProbe(const ProbeDescription& earlier, LoadedScene& loaded, FrameChange& change) {
-  const RenderDescription& job = loaded.description;
+// The probe, if it has turned or is another one. What throws changes nothing.
+void replaceProbe(const RenderDescription& job, LoadedScene& loaded, FrameChange& change) {
+  const ProbeDescription earlier = loaded.description.probe;
   const ProbeDescription& probe = job.probe;
   const bool isOther = probe.file != earlier.file || probe.map != earlier.map ||
                        probe.mapping != earlier.mapping || probe.scale != earlier.scale;
   if (!isOther && loaded.probe.rotation() == probe.rotation) return;
   if (isOther) {
+    LoadedProbe read = loadProbeOf(job, loaded.scene);
+    Probe replaced = probeOf(job, read);
+    loaded.sources = sourcesOf(job, read, replaced);
     replaceFile(earlier.file, probe.file, loaded.files);
-    loaded.loadedProbe = loadProbeOf(job, loaded.scene);
-    loaded.probe = probeOf(job, loaded.loadedProbe);
+    loaded.loadedProbe = std::move(read);
+    loaded.probe = std::move(replaced);
   } else {
     loaded.probe.turnTo(probe.rotation);
+    if (loaded.sources) loaded.sources->remainder.turnTo(probe.rotation);
   }
-  loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
   change.lighting = true;
 }
 
@@ -164,6 +168,7 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
   result.modelWarnings = std::move(models.warnings);
   result.description = std::move(job);
   if (result.description.composite) {
+    reportWork("local scene", 0);
     prepareLocalScene(result);
     scaleProbeByPlate(result);
   }
@@ -176,15 +181,17 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
 FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded,
                       ModelCache& cache) {
   assert(!description.composite);
-  const ProbeDescription earlier = loaded.description.probe;
-  loaded.description = description;
-  RenderDescription& job = loaded.description;
+  RenderDescription job = description;
   FrameChange change;
-  replaceProbe(earlier, loaded, change);
-  if (loaded.scene.isAnimated)
+  if (loaded.scene.isAnimated) {
+    replaceProbe(job, loaded, change);
     replaceModels(job, loaded, cache, change);
-  else
-    loaded.camera = placeCamera(job, loaded.scene, loaded.view, loaded.origin);
+  } else {
+    const Camera camera = placeCamera(job, loaded.scene, loaded.view, loaded.origin);
+    replaceProbe(job, loaded, change);
+    loaded.camera = camera;
+  }
+  loaded.description = std::move(job);
   checkMemory(loaded);
   loaded.messages = loadMessages(loaded);
   return change;

@@ -43,7 +43,8 @@ double bytesOfFiles(const Scene& scene) {
 double imageBytes(const RenderDescription& job) {
   const RenderSettings& s = job.settings;
   const double composite = job.composite ? double(compositeBytesPerPixel(s.denoise)) : 0;
-  return imageBytes(s) + composite * s.width * s.height;
+  const double snapshots = job.run.isWatched ? snapshotBytes(s) : 0;
+  return imageBytes(s) + snapshots + composite * s.width * s.height;
 }
 
 double memoryLimit(const RenderDescription& job) { return job.run.memory.value_or(memoryBudget()); }

@@ -22,7 +22,7 @@ MemoryEstimate estimateMemory(const LoadedScene& loaded);
 // The job's limit: `--memory`, or memoryBudget().
 double memoryLimit(const RenderDescription& job);
 
-// The film, layers and output images of a job of known size.
+// The film, layers, output images and snapshots of a job of known size.
 double imageBytes(const RenderDescription& job);
 
 // "images 1.2 GB, textures 0.1 GB, ..."

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/work_monitor.h"
 #include "scene/bounds.h"
 #include "scene/builder/add_lamp.h"
 #include "scene/extended_surface.h"
@@ -89,8 +90,13 @@ Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& mo
   const auto add = [&](const std::string& line) {
     if (known.insert(line).second) warnings.push_back(line);
   };
-  for (const ModelEntry& model : models) {
+  for (size_t i = 0; i < models.size(); ++i) {
+    reportWork("models", double(i) / double(models.size()));
+    const ModelEntry& model = models[i];
+    const std::string name = elementName("models", i);
     GltfChoice choice = model.choice;
+    if (choice.animation) choice.animation->location = job.origins.of(name + ".choice.animation");
+    if (choice.variant) choice.variant->location = job.origins.of(name + ".choice.variant");
     // Near the world's origin the translation is as exact as all coordinates.
     choice.origin = origin == glm::dvec3(0) ? origin : origin - model.translationRest;
     choice.cache = &cache;
@@ -110,7 +116,7 @@ Camera cameraOf(const RenderDescription& job, const Scene& scene, const Automati
     throwInput(
         "{}: the image folds back inside the frame, where (1 + k1 r^2 + k2 r^4) r does not "
         "ascend; `distortion` may be for another `fov`",
-        job.camera.optics->location);
+        job.origins.of("camera.optics"));
   return camera.turnedAround(here.centre, job.camera.orbit + turn);
 }
 

@@ -21,8 +21,7 @@ constexpr std::string_view kGround = "ground";
 
 // Whether the local scene names it, and no node of the models has its name.
 bool namesTheGround(const CompositeEntry& entry, const Scene& scene) {
-  return std::ranges::any_of(entry.localScene,
-                             [](const NamedSetting& node) { return node.name == kGround; }) &&
+  return std::ranges::find(entry.localScene, kGround) != entry.localScene.end() &&
          std::ranges::find(scene.nodeNames, kGround) == scene.nodeNames.end();
 }
 
@@ -80,30 +79,34 @@ void prepareLocalScene(LoadedScene& loaded) {
   CompositeDescription& composite = *job.composite;
   const CompositeEntry& entry = composite.entry;
   Scene& scene = loaded.scene;
-  std::vector<NamedSetting> localScene = entry.localScene;
+  const std::string location = job.origins.of("composite.entry");
+  std::vector<NamedSetting> localScene;
+  for (size_t i = 0; i < entry.localScene.size(); ++i)
+    localScene.push_back(
+        {entry.localScene[i], job.origins.of(elementName("composite.entry.localScene", i))});
   if (hasGround(composite, scene)) {
     std::erase_if(localScene, [&](const NamedSetting& node) { return node.name == kGround; });
     placeGround(job, loaded);
-    localScene.push_back({kGroundNode, entry.location});
+    localScene.push_back({kGroundNode, location});
   }
-  loaded.isObject = findObjects(scene, localScene, entry.location);
+  loaded.isObject = findObjects(scene, localScene, location);
   if (composite.choosesReflectance && hasLamps(scene))
     composite.reflectance = CompositeDescription::Reflectance::Plate;
   if (composite.reflectance == CompositeDescription::Reflectance::Flat) {
-    const std::string location = job.origins.of("composite.reflectance");
+    const std::string reflectance = job.origins.of("composite.reflectance");
     if (!flatNormal(scene, loaded.isObject))
-      throwInput("{}: the local scene is not flat; give \"plate\"", location);
+      throwInput("{}: the local scene is not flat; give \"plate\"", reflectance);
     if (isLayered(scene, loaded.isObject))
       throwInput(
           "{}: needs matte surfaces, and there are coats, sheen or transmission; give "
           "\"plate\"",
-          location);
+          reflectance);
     if (job.surroundings)
       throwInput("{}: needs a distant probe, and there are [surroundings]; give \"plate\"",
-                 location);
+                 reflectance);
     if (hasLamps(scene))
       throwInput("{}: needs the probe as the only light, and there are lamps; give \"plate\"",
-                 location);
+                 reflectance);
   }
   if (composite.reflectance != CompositeDescription::Reflectance::Model) {
     loaded.projection =

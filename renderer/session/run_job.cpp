@@ -84,8 +84,7 @@ PreparedScene prepareScene(const LoadedScene& loaded, const PreparedScene* earli
   }
   prepared.buildSeconds = watch.lap();
   prepared.lighting = makeLighting(loaded);
-  prepared.environment =
-      makeEnvironment(job.settings.integrator, job.lighting.strategy.name, loaded);
+  prepared.environment = makeEnvironment(job.settings.integrator, job.lighting.strategy, loaded);
   if (job.settings.wantsGroups()) checkGroupMemory(loaded, *prepared.world, *prepared.lighting);
   prepared.prepareSeconds = watch.lap();
   loaded.scene.checkTexels();

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/work_monitor.h"
 #include "lighting/finite_surroundings.h"
 #include "lighting/scene_sources.h"
 #include "lighting/suns.h"
@@ -108,6 +109,7 @@ void checkLit(const RenderDescription& job, const Scene& scene) {
 }
 
 LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene) {
+  reportWork("probe", 0);
   LoadedProbe loaded = loadWholeProbe(job, scene);
   keepPart(job, scene, loaded.latLong);
   return loaded;
@@ -135,7 +137,8 @@ std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const Loaded
                                       const Probe& probe) {
   const std::vector<SourceEntry>& entries = job.sources;
   if (entries.empty() || job.lighting.from == LightFrom::Suns) return {};
-  if (loaded.fileWidth == 0) throwInput("{}: [[source]] needs a probe", entries.front().location);
+  if (loaded.fileWidth == 0)
+    throwInput("{}: [[source]] needs a probe", job.origins.of(elementName("sources", 0)));
   std::vector<PolygonLight> lights;
   Image rest = probe.latLong();
   // First the illums: what they take stays visible.
@@ -143,10 +146,11 @@ std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const Loaded
     std::vector<SphericalPolygon> polygons;
     const size_t first = lights.size();
     std::vector<std::string> locations;
-    for (const SourceEntry& entry : entries) {
+    for (size_t i = 0; i < entries.size(); ++i) {
+      const SourceEntry& entry = entries[i];
       if (entry.isIllum != isIllum) continue;
-      polygons.push_back(polygonOf(entry.corners, loaded, entry.location));
-      locations.push_back(entry.location);
+      locations.push_back(job.origins.of(elementName("sources", i)));
+      polygons.push_back(polygonOf(entry.corners, loaded, locations.back()));
       lights.push_back({{polygons.back(), dvec3(0)}, isIllum, entry.name});
     }
     PolygonExtraction extraction = extractPolygons(rest, polygons);
@@ -175,10 +179,12 @@ std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
 
 std::unique_ptr<LightSource> makeLighting(const LoadedScene& loaded) {
   const RenderDescription& job = loaded.description;
+  reportWork("lighting", 0);
   const bool splitsProbe = job.settings.wantsGroups();
   if (job.lighting.make)
     return withSources(job.lighting.make(sampledProbe(loaded)), loaded, splitsProbe);
-  return makeLighting(job.lighting.strategy, job.settings.mis, loaded, splitsProbe);
+  return makeLighting({job.lighting.strategy, job.origins.of("lighting.strategy")},
+                      job.settings.mis, loaded, splitsProbe);
 }
 
 std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrator,

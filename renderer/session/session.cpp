@@ -5,15 +5,18 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <set>
 #include <thread>
 
 #include "base/error.h"
 #include "base/json.h"
+#include "base/work_monitor.h"
 #include "description/describe.h"
 #include "render/live_result.h"
 #include "render/render_state.h"
 #include "scene/gltf/model_cache.h"
+#include "session/live_image.h"
 #include "session/run_job.h"
 #include "session/scene_lighting.h"
 #include "trace/built_geometry.h"
@@ -72,13 +75,21 @@ std::set<std::string> differences(RenderDescription a, RenderDescription b) {
 class WatchedRender : public RenderControl {
  public:
   bool restore(RenderState&) override { return false; }
+  void endPass(const RenderState& state) override {
+    if (isWatched_) noise_ = state.result.film.noise().noise;
+  }
   bool wantsPause(const RenderState&) const override { return false; }
   void pause(RenderState&) override {}
   void end(RenderState&) override {}
   LiveResult* live() override { return &live_; }
 
+  void watch() { isWatched_ = true; }
+  double noise() const { return noise_; }  // after the last pass that was watched; NaN before
+
  private:
   LiveResult live_;
+  std::atomic<bool> isWatched_ = false;
+  std::atomic<double> noise_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 double meanCount(const Image& counts) {
@@ -89,47 +100,65 @@ double meanCount(const Image& counts) {
 
 }  // namespace
 
-class Session::Implementation {
+class Session::Implementation : private WorkMonitor {
  public:
-  explicit Implementation(RenderDescription description) : description_(std::move(description)) {}
-  ~Implementation() { cancel(); }
+  Implementation(RenderDescription description, SessionCallbacks callbacks)
+      : callbacks_(std::move(callbacks)) {
+    take(std::move(description));
+  }
+  ~Implementation() override { discard(); }
 
   void start();
+  void requestCancel() { stop_ = true; }
   void cancel();
   void update(RenderDescription description);
   bool isRunning() const { return isRunning_; }
   double fraction() const { return fraction_; }
   const SessionImage& wait();
-  std::optional<SessionImage> snapshot();
+  std::shared_ptr<const SessionImage> snapshot();
   Messages messages() const { return loaded_ ? loaded_->messages : Messages(); }
   Work work() const { return work_; }
 
  private:
+  // A render that is cancelled makes an image; nothing else of a session outlives its cancellation.
+  bool isCancelled() const override { return discards_ || (stop_ && !isReady_); }
+  void report(const char* stage, double fraction) override;
+  void say(const Messages& messages) const;
+
+  void take(RenderDescription description);
+  void discard();
   void run();
+  void attempt(const std::function<void()>& task);
+  void render();
   void prepare();
   void load();
   void changeWhatDiffers();
+  void unload();
 
+  const SessionCallbacks callbacks_;
   RenderDescription description_;
   std::optional<RenderDescription> given_;  // that of loaded_
   std::unique_ptr<LoadedScene> loaded_;
   PreparedScene prepared_;
+  bool lightingIsStale_ = false;  // that of prepared_: its making was cancelled, or has failed
   ModelCache models_;
   Work work_;
   std::unique_ptr<WatchedRender> control_;
-  std::optional<SessionImage> result_;
+  std::optional<LiveImage> liveImage_;
+  std::shared_ptr<const SessionImage> result_;
   std::exception_ptr error_;
-  std::atomic<bool> stop_ = false, isRunning_ = false, isReady_ = false;
+  std::atomic<bool> stop_ = false, discards_ = false, isRunning_ = false, isReady_ = false;
   std::atomic<double> fraction_ = 0;
+  std::thread::id ownThread_;
   std::thread thread_;
 };
 
 void Session::Implementation::start() {
   if (thread_.joinable()) return;
-  stop_ = false;
-  isReady_ = false;
+  stop_ = discards_ = isReady_ = false;
   isRunning_ = true;
   fraction_ = 0;
+  liveImage_.reset();
   result_.reset();
   error_ = nullptr;
   control_ = std::make_unique<WatchedRender>();
@@ -137,15 +166,26 @@ void Session::Implementation::start() {
 }
 
 void Session::Implementation::cancel() {
-  stop_ = true;
+  requestCancel();
   if (thread_.joinable()) thread_.join();
 }
 
-void Session::Implementation::update(RenderDescription description) {
+void Session::Implementation::discard() {
+  discards_ = true;
   cancel();
-  description_ = std::move(description);
+}
+
+void Session::Implementation::update(RenderDescription description) {
+  discard();
+  take(std::move(description));
+  liveImage_.reset();
   result_.reset();
   control_.reset();
+}
+
+void Session::Implementation::take(RenderDescription description) {
+  description_ = std::move(description);
+  description_.run.isWatched = true;
 }
 
 const SessionImage& Session::Implementation::wait() {
@@ -155,48 +195,85 @@ const SessionImage& Session::Implementation::wait() {
   return *result_;
 }
 
+// Only this thread calls back; what others report is passed over.
+void Session::Implementation::report(const char* stage, double fraction) {
+  if (callbacks_.progress && std::this_thread::get_id() == ownThread_)
+    callbacks_.progress({stage, fraction});
+}
+
+void Session::Implementation::say(const Messages& messages) const {
+  if (!callbacks_.message) return;
+  for (const Message& message : messages) callbacks_.message(message);
+}
+
 void Session::Implementation::run() {
-  try {
+  ownThread_ = std::this_thread::get_id();
+  attempt([&] {
+    const MonitoredWork monitored(this);
     prepare();
-    if (!stop_) {
-      isReady_ = true;
-      const auto& composite = description_.composite;
-      const bool hasTwoPasses = composite && composite->passes == Passes::Two;
-      JobResult result = renderJob(
-          *loaded_, prepared_, [this](double fraction) { fraction_ = fraction; }, stop_,
-          hasTwoPasses ? nullptr : control_.get());
-      result_ = {std::move(result.image), meanCount(result.render.film.sampleCounts()),
-                 result.noise.noise, !result.render.interrupted, std::move(result.messages)};
-    }
+    say(loaded_->messages);
+    endIfCancelled();
+    isReady_ = true;
+    render();
+  });
+  isRunning_ = false;
+  if (callbacks_.finished) attempt(callbacks_.finished);
+}
+
+void Session::Implementation::attempt(const std::function<void()>& task) {
+  try {
+    task();
+  } catch (const Interrupted&) {  // wait() says so
   } catch (...) {
     error_ = std::current_exception();
-    if (!isReady_) {  // it may be half of one description and half of another
-      prepared_ = {};
-      loaded_.reset();
-    }
   }
-  isRunning_ = false;
+}
+
+void Session::Implementation::render() {
+  const auto& composite = description_.composite;
+  const bool hasTwoPasses = composite && composite->passes == Passes::Two;
+  const auto progress = [this](double fraction) {
+    fraction_ = fraction;
+    report("render", fraction);
+  };
+  progress(0);
+  JobResult result =
+      renderJob(*loaded_, prepared_, progress, stop_, hasTwoPasses ? nullptr : control_.get());
+  if (!result.render.interrupted) progress(1);
+  say(result.messages);
+  const double samples = meanCount(result.render.film.sampleCounts());
+  if (samples == 0) return;
+  result_ = std::make_shared<const SessionImage>(
+      SessionImage{std::move(result.image), samples, result.noise.noise, !result.render.interrupted,
+                   std::move(result.messages)});
 }
 
 void Session::Implementation::prepare() {
   work_ = {};
   loaded_ && !given_->composite && !description_.composite ? changeWhatDiffers() : load();
-  given_ = description_;
   work_.meshBuilds = prepared_.world->accel.built()->builds();
 }
 
 void Session::Implementation::load() {
   work_ = {.loadedScene = true, .loadedProbe = true, .preparedLighting = true};
-  const PreparedScene earlier = std::move(prepared_);
-  prepared_ = {};
-  LoadedScene scene = loadScene(description_, &models_);
-  if (loaded_ && earlier.world) {
-    *loaded_ = std::move(scene);  // in its place, where the structures over meshes expect it
-    prepared_ = prepareScene(*loaded_, &earlier);
-  } else {
-    loaded_ = std::make_unique<LoadedScene>(std::move(scene));
-    prepared_ = prepareScene(*loaded_);
+  ModelCache models = models_;
+  LoadedScene scene = loadScene(description_, &models);
+  models_ = std::move(models);
+  try {
+    const PreparedScene earlier = std::exchange(prepared_, {});
+    if (loaded_) {
+      *loaded_ = std::move(scene);  // in its place, where the structures over meshes expect it
+      prepared_ = prepareScene(*loaded_, &earlier);
+    } else {
+      loaded_ = std::make_unique<LoadedScene>(std::move(scene));
+      prepared_ = prepareScene(*loaded_);
+    }
+  } catch (...) {
+    unload();
+    throw;
   }
+  given_ = description_;
+  lightingIsStale_ = false;
 }
 
 void Session::Implementation::changeWhatDiffers() {
@@ -212,40 +289,53 @@ void Session::Implementation::changeWhatDiffers() {
   const auto hasProbe = [](const RenderDescription& d) { return d.probe.file || d.probe.map; };
   if (!keepsScene || (differs(kOfProbe) && !(hasProbe(*given_) && hasProbe(description_))))
     return load();
-  const FrameChange change = loadFrame(description_, *loaded_, models_);
+  FrameChange change;
+  try {
+    change = loadFrame(description_, *loaded_, models_);
+  } catch (...) {
+    lightingIsStale_ = true;
+    if (loaded_->scene.isAnimated) unload();  // else it is of one description
+    throw;
+  }
   if (change.geometry) return load();
   work_.loadedProbe = change.lighting;
   const bool hasOwnStrategy = given_->lighting.make || description_.lighting.make;
-  if (!change.lighting && !differs(kOfLighting) && !hasOwnStrategy) return;
+  lightingIsStale_ |= change.lighting || differs(kOfLighting) || hasOwnStrategy;
+  given_ = description_;
+  if (!lightingIsStale_) return;
   work_.preparedLighting = true;
   prepared_.lighting = makeLighting(*loaded_);
-  prepared_.environment = makeEnvironment(description_.settings.integrator,
-                                          description_.lighting.strategy.name, *loaded_);
+  prepared_.environment =
+      makeEnvironment(description_.settings.integrator, description_.lighting.strategy, *loaded_);
+  lightingIsStale_ = false;
 }
 
-std::optional<SessionImage> Session::Implementation::snapshot() {
-  if (!isReady_ || !control_) return {};
-  const RenderResult* result = control_->live()->update();
-  const double samples = result ? meanCount(result->film.sampleCounts()) : 0;
-  if (samples == 0) return {};
-  FinishPlan plan = finishPlan(*loaded_, *result);
-  plan.settings.denoise = false;
-  const std::atomic<bool> never = false;
-  FinishedImage finished = finish(
-      plan, *result, [](double) {}, never);
-  return SessionImage{std::move(finished.image), samples, finished.noise.noise, false, {}};
+// What has failed half-way may be half of one description and half of another.
+void Session::Implementation::unload() {
+  prepared_ = {};
+  loaded_.reset();
+  models_ = {};
 }
 
-Session::Session(RenderDescription description)
-    : own_(std::make_unique<Implementation>(std::move(description))) {}
+std::shared_ptr<const SessionImage> Session::Implementation::snapshot() {
+  if (!isRunning_ && result_) return result_;
+  if (!isReady_) return nullptr;
+  control_->watch();
+  if (!liveImage_) liveImage_.emplace(*loaded_);
+  return liveImage_->update(*control_->live(), control_->noise());
+}
+
+Session::Session(RenderDescription description, SessionCallbacks callbacks)
+    : own_(std::make_unique<Implementation>(std::move(description), std::move(callbacks))) {}
 Session::~Session() = default;
 void Session::start() { own_->start(); }
+void Session::requestCancel() { own_->requestCancel(); }
 void Session::cancel() { own_->cancel(); }
 void Session::update(RenderDescription description) { own_->update(std::move(description)); }
 bool Session::isRunning() const { return own_->isRunning(); }
 double Session::fraction() const { return own_->fraction(); }
 const SessionImage& Session::wait() { return own_->wait(); }
-std::optional<SessionImage> Session::snapshot() { return own_->snapshot(); }
+std::shared_ptr<const SessionImage> Session::snapshot() { return own_->snapshot(); }
 Messages Session::messages() const { return own_->messages(); }
 Session::Work Session::work() const { return own_->work(); }
 

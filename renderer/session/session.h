@@ -2,8 +2,8 @@
 // A render in the background.
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <optional>
 
 #include "base/message.h"
 #include "description/render_description.h"
@@ -22,6 +22,23 @@ struct SessionImage {
   const Image& color() const { return image.layers.front().image; }
 };
 
+// What a session is doing. Stages of preparing: "models", "textures", "probe", "local scene",
+// "acceleration structures", "lighting"; some may be absent, or come again. Then "render", which
+// includes photons, caches and denoising.
+struct SessionProgress {
+  const char* stage;
+  double fraction;  // of the stage, from 0 on; NaN if unknown
+};
+
+// All are called in the session's own thread, one at a time, between start() and the end of wait(),
+// cancel() or update(), and may be empty. They may call Session::requestCancel(), isRunning() and
+// fraction(). An exception that one throws ends the render, and is thrown by wait().
+struct SessionCallbacks {
+  std::function<void(const SessionProgress&)> progress = {};
+  std::function<void(const Message&)> message = {};  // notes and warnings, when they are known
+  std::function<void()> finished = {};  // the last one of each start, also of one that failed
+};
+
 // Loads and renders a description in a thread of its own, hands out what there is so far without
 // stopping those that render, and takes other descriptions, of which it redoes only what differs
 // from the one before. After update() the picture has the bits of a new session's.
@@ -30,25 +47,32 @@ struct SessionImage {
 // (InputError, RunError) are thrown by the next wait().
 class Session {
  public:
-  explicit Session(RenderDescription description);
-  ~Session();  // cancels
+  explicit Session(RenderDescription description, SessionCallbacks callbacks = {});
+  ~Session();  // as update()
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   // Begins, if it has not begun: reads files, builds structures and renders.
   void start();
-  // Stops as soon as the step or the tiles in work are finished.
+  // Asks the work to end, and does not wait: from any thread at any time. Preparing ends within
+  // tens of milliseconds; a render when the tiles in work are finished, and its image is made of
+  // what there is.
+  void requestCancel();
+  // The same, and waits.
   void cancel();
-  // Cancels, and takes another description, for the next start().
+  // Ends the work within tens of milliseconds, whatever it is, without an image. Takes another
+  // description, for the next start().
   void update(RenderDescription description);
 
   bool isRunning() const;
   double fraction() const;  // of the render's work that is done; NaN if unknown
   // Waits for the end of the render. Throws Interrupted if it was cancelled before it rendered.
   const SessionImage& wait();
-  // What there is, also while it renders; not denoised. nullopt before the first samples, and for a
-  // reference of two passes. A session takes the memory of the film twice.
-  std::optional<SessionImage> snapshot();
+  // What there is, also while it renders: not denoised, without the layer `variance`, and with the
+  // noise after the last pass over the image. Null before the first samples, and for a reference of
+  // two passes. Costs little if the snapshot before the last one is not in use any more. The film
+  // is kept twice from the first call on.
+  std::shared_ptr<const SessionImage> snapshot();
   // Notes and warnings of the files and the description; after wait().
   Messages messages() const;
 

@@ -118,7 +118,7 @@ RenderSettings Row::applied(RenderSettings settings) const {
 
 void Row::applyTo(RenderDescription& description) const {
   description.settings = applied(description.settings);
-  description.lighting.strategy.name = strategy;
+  description.lighting.strategy = strategy;
   description.straightGlassShadows = has(Mode::GlassShadows);
 }
 

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "base/work_monitor.h"
 #include "scene/extended_surface.h"
 #include "trace/accel.h"
 #include "trace/built_geometry.h"
@@ -156,13 +157,14 @@ void Accel::build() {
   scene_ = built_->newScene();
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     if (redundant[i] || std::ranges::binary_search(still, uint32_t(i))) continue;
+    endIfCancelled();
     BuiltGeometry::attach(scene_, geometryOf(scene.instances[i]), uint32_t(i), mask(uint32_t(i)));
   }
   if (!still.empty())
     BuiltGeometry::attach(
         scene_, newInstance(built_->device(), built_->staticScene(still, masks_), Transform{}),
         uint32_t(scene.instances.size()), kAllInstances);
-  rtcCommitScene(scene_);
+  BuiltGeometry::commit(scene_);
 }
 
 }  // namespace chromeball

@@ -2,10 +2,12 @@
 #include "trace/built_geometry.h"
 
 #include <algorithm>
+#include <memory>
 #include <set>
 #include <utility>
 
 #include "base/error.h"
+#include "base/work_monitor.h"
 #include "trace/filter.h"
 
 namespace chromeball {
@@ -17,6 +19,11 @@ vec3* newVertices(RTCGeometry geometry, size_t step, size_t count) {
   return static_cast<vec3*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, unsigned(step), RTC_FORMAT_FLOAT3, sizeof(vec3), count));
 }
+
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using SceneInWork = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 
 }  // namespace
 
@@ -67,6 +74,19 @@ void BuiltGeometry::attach(RTCSceneTy* scene, RTCGeometryTy* geometry, uint32_t 
   rtcReleaseGeometry(geometry);
 }
 
+void BuiltGeometry::commit(RTCSceneTy* scene) {
+  const auto goesOn = [](void* monitor, double fraction) {
+    auto& owner = *static_cast<WorkMonitor*>(monitor);
+    owner.report("acceleration structures", fraction);
+    return !owner.isCancelled();
+  };
+  if (WorkMonitor* const monitor = currentMonitor())
+    rtcSetSceneProgressMonitorFunction(scene, goesOn, monitor);
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+  endIfCancelled();
+}
+
 RTCGeometryTy* BuiltGeometry::newTriangles(int index) const {
   const Mesh& mesh = scene_.meshes[size_t(index)];
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -104,9 +124,10 @@ RTCSceneTy* BuiltGeometry::meshScene(int index) {
   const MeshList::Shared& mesh = scene_.meshes.shared(size_t(index));
   MeshScene& entry = meshScenes_[{mesh.get(), filters_.ofMesh[size_t(index)]}];
   if (!entry.scene) {
-    entry = {mesh, newScene()};
-    attach(entry.scene, newGeometry(index), 0, kAllInstances);
-    rtcCommitScene(entry.scene);
+    SceneInWork scene(newScene());
+    attach(scene.get(), newGeometry(index), 0, kAllInstances);
+    commit(scene.get());
+    entry = {mesh, scene.release()};
     ++builds_;
   }
   return entry.scene;
@@ -122,10 +143,11 @@ RTCSceneTy* BuiltGeometry::staticScene(const std::vector<uint32_t>& instances,
   }
   if (static_ && members == members_) return static_;
   releaseStatic();
-  static_ = newScene();
+  SceneInWork scene(newScene());
   for (const Member& m : members)
-    attach(static_, newGeometry(scene_.instances[m.instance].mesh), m.instance, m.mask);
-  rtcCommitScene(static_);
+    attach(scene.get(), newGeometry(scene_.instances[m.instance].mesh), m.instance, m.mask);
+  commit(scene.get());
+  static_ = scene.release();
   ++builds_;
   members_ = std::move(members);
   return static_;

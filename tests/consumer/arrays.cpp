@@ -38,7 +38,7 @@ int main() try {
   RenderDescription description;
   description.scene = tetrahedron();
   description.probe.map = sky();
-  description.lighting.strategy.name = "importance";
+  description.lighting.strategy = "importance";
   description.camera.placed =
       CameraEntry{.position = {0, 1, 4}, .target = {0, 0.6, 0}, .up = {0, 1, 0}};
   description.size = ImageSize{160, 120};

@@ -43,7 +43,7 @@ int main(int argc, char** argv) try {
   description.settings.samples = 16;
   description.settings.seed = 1;
   for (const char* name : {"uniform", "importance", "cosine"}) {
-    description.lighting.strategy.name = name;
+    description.lighting.strategy = name;
     if (name == std::string("cosine"))
       description.lighting.make = [](const Probe& probe) {
         return std::make_unique<Cosine>(probe);

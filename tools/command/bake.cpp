@@ -26,7 +26,8 @@ namespace {
 RenderDescription plannedJob(const BakeOptions& a) {
   SceneFile scene = openScene(a.scene);
   if (scene.composite)
-    throwInput("{}: a composite cannot be baked; bake its model", scene.composite->location);
+    throwInput("{}: a composite cannot be baked; bake its model",
+               scene.origins.of("composite.entry"));
   if (a.what == "ambient-occlusion" && !a.settings.has("probe.file"))
     scene.lamps.push_back({.ambient = AmbientLamp{}});  // it needs no light of the user's
   dropUnheeded(scene, SceneCommand::Bake);

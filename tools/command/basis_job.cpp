@@ -10,7 +10,8 @@ RenderDescription basisJob(const SceneOptions& options, SceneCommand command) {
   const char* what = command == SceneCommand::Basis ? "light stage" : "transfer";
   SceneFile scene = openScene(options.scene);
   if (scene.composite)
-    throwInput("{}: a composite has no {}; take its model", scene.composite->location, what);
+    throwInput("{}: a composite has no {}; take its model", scene.origins.of("composite.entry"),
+               what);
   if (scene.surroundings)
     throwInput("{}: [surroundings] are not at infinity, as the light of a {} is", scene.path, what);
   for (const char* name : {"probe.file", "probe.mapping", "probe.rotation", "probe.scale"})

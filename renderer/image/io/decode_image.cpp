@@ -99,6 +99,8 @@ DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name)
     return image;
   } catch (const InputError&) {
     throw;
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::runtime_error& error) {
     throwInput("{}: damaged image: {}", name, error.what());
   }

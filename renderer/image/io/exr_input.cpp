@@ -18,6 +18,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/work_monitor.h"
 #include "image/io/color_channels.h"
 #include "image/io/exr_header.h"
 #include "image/io/exr_metadata.h"
@@ -229,7 +230,15 @@ void ExrInput::readHeader() {
 }
 
 void ExrInput::read(int top, int count, float* texels) {
-  readByLibrary(path_, [&] { part_->read(top, count, channels_, texels); });
+  // Of whole blocks; so many texels are decoded in some milliseconds.
+  constexpr int kTexels = 1 << 19;
+  const int blocks = std::max(kTexels / (width_ * rowsOfBlock_), 1);
+  readByLibrary(path_, [&] {
+    forParts(size_t(count), size_t(blocks) * size_t(rowsOfBlock_), [&](size_t begin, size_t end) {
+      part_->read(top + int(begin), int(end - begin), channels_,
+                  texels + begin * size_t(width_) * channels_.size());
+    });
+  });
 }
 
 }  // namespace chromeball

@@ -11,6 +11,7 @@
 // needs jpeglib.h
 #include <jerror.h>
 
+#include "base/work_monitor.h"
 #include "image/io/sample_reader.h"
 #include "image/size_limits.h"
 
@@ -50,6 +51,7 @@ class JpegReader : public SampleReader {
     std::vector<uint8_t> rgb(isCmyk() ? size_t(layout_.width) * 3 : 0);
     uint8_t* to = samples.data();
     for (int y = 0; y < layout_.height; ++y) {
+      endIfCancelled();
       guarded([&] { jpeg_read_scanlines(&jpeg_, &to, 1); });
       if (isCmyk()) cmykToRgb(samples.data(), layout_.width, rgb.data());
       row(y, isCmyk() ? rgb.data() : samples.data());

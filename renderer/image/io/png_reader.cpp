@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/work_monitor.h"
 #include "image/io/sample_reader.h"
 
 namespace chromeball {
@@ -40,6 +41,7 @@ class PngReader : public SampleReader {
     const auto at = [&](int y) { return rows.data() + (passes_ > 1 ? rowBytes * size_t(y) : 0); };
     for (int pass = 0; pass < passes_; ++pass)
       for (int y = 0; y < layout_.height; ++y) {
+        endIfCancelled();
         guarded([&] { png_read_row(png_, at(y), nullptr); });
         if (passes_ == 1) row(y, rows.data());
       }

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/work_monitor.h"
 #include "image/size_limits.h"
 
 namespace chromeball {
@@ -31,6 +32,7 @@ class Reader {
     Image image(areColumns_ ? height_ : width_, areColumns_ ? width_ : height_, 3);
     std::vector<Rgbe> row(width_);
     for (int y = 0; y < height_; ++y) {
+      endIfCancelled();
       readRow(row);
       for (int x = 0; x < width_; ++x) {
         const int u = reversesRows_ ? width_ - 1 - x : x, v = reversesOrder_ ? height_ - 1 - y : y;

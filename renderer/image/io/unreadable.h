@@ -22,6 +22,8 @@ auto readByLibrary(const std::filesystem::path& path, const Read& read) {
     throw;
   } catch (const RunError&) {
     throw;
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::bad_alloc&) {
     throwUnreadable(path, "its header claims more texels than fit into memory");
   } catch (const std::exception& error) {

@@ -5,6 +5,7 @@
 #include <queue>
 
 #include "base/hash.h"
+#include "base/work_monitor.h"
 #include "probe/mapping.h"
 
 namespace chromeball {
@@ -188,8 +189,10 @@ Constellation penrose(const ImportanceTable& table, int count, uint64_t seed) {
   if (!(table.texels().total().weight > 0)) return {};
   Search search(table, seed);
   std::vector<dvec3> directions;
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < count; ++i) {
+    endIfCancelled();
     directions.push_back(*uvToDirection(Mapping::LatLong, toUv(search.next())));
+  }
   const std::vector<dvec3> irradiance = table.blocks().assignToNearest(directions);
   Constellation lights;
   for (int i = 0; i < count; ++i) lights.push_back(makeLight(directions[i], irradiance[i]));

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <queue>
 
+#include "base/memory.h"
+#include "base/work_monitor.h"
 #include "probe/mapping.h"
 
 namespace chromeball {
@@ -28,9 +30,10 @@ int firstWhere(int low, int high, Predicate holds) {
 RegionTable::RegionTable(const Image& latLong, RegionMeasure measure)
     : texels_(latLong, kFineCells),
       measure_(measure),
-      moments_(size_t(texels_.width() + 1) * (texels_.height() + 1), dvec4(0)),
+      moments_(longArray<dvec4>(size_t(texels_.width() + 1) * (texels_.height() + 1))),
       lit_(moments_.size()) {
   for (int y = 0; y < texels_.height(); ++y) {
+    endIfCancelled();
     const double top = texels_.uv(0, y).y, bottom = texels_.uv(0, y + 1).y;
     // The cells of a row have the same solid angle per area of the map.
     const double factor = measure == RegionMeasure::MapArea
@@ -72,6 +75,7 @@ Constellation RegionTable::lights(const std::vector<Region>& regions, LightPlace
   Constellation lights;
   lights.reserve(regions.size());
   for (const Region& r : regions) {
+    endIfCancelled();
     TexelSum sum;
     for (int y = r.y0; y < r.y1; ++y)
       for (int x = r.x0; x < r.x1; ++x) sum += texels_.at(x, y);
@@ -118,6 +122,7 @@ std::vector<Region> subdivide(const RegionTable& table, int count,
   regions.resize(1);
   put(0, whole);
   while (int(regions.size()) < count && !cuttable.empty()) {
+    endIfCancelled();
     const int index = cuttable.top().second;
     cuttable.pop();
     const auto [first, second] = cut(regions[index]);

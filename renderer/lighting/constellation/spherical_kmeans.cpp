@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/work_monitor.h"
+
 namespace chromeball {
 namespace {
 
@@ -116,6 +118,7 @@ bool SphericalKMeans::moveCentres() {
 }
 
 bool SphericalKMeans::step() {
+  endIfCancelled();
   assign();
   return moveCentres();
 }

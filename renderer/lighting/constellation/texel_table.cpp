@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "probe/mapping.h"
 #include "probe/solid_angle.h"
@@ -52,7 +53,7 @@ TexelTable::TexelTable(const Image& latLong, size_t maxCells)
       block_(blockFor(mapWidth_, mapHeight_, maxCells)),
       width_(ceilDivide(mapWidth_, block_)),
       height_(ceilDivide(mapHeight_, block_)),
-      cells_(size_t(width_) * height_) {
+      cells_(longArray<TexelSum>(size_t(width_) * height_)) {
   std::vector<dvec2> column(mapWidth_);  // x and z of the direction on the horizon
   for (int x = 0; x < mapWidth_; ++x) {
     const double azimuth = 2 * kPiD * (x + 0.5) / mapWidth_;

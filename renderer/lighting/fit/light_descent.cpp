@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "base/work_monitor.h"
 #include "lighting/fit/light_error.h"
 #include "lighting/fit/nonnegative.h"
 
@@ -200,6 +201,7 @@ void descend(FittedLights& lights, const RadiancePoints& probe, bool ambient, in
   QuadraticModel model = modelAround(lights, ambient, gram, products);
   double damping = 1e-3;
   for (int step = 0; step < maxSteps && damping < 1e6; ++step) {
+    endIfCancelled();
     FittedLights candidate = lights;
     candidate.directions = moved(lights.directions, stepOf(model, damping));
     gram = gramMatrix(candidate.directions, ambient);

@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "base/work_monitor.h"
+
 namespace chromeball {
 namespace {
 
@@ -39,6 +41,7 @@ std::vector<double> solveNonnegative(std::span<const double> A, std::span<const 
   const double tolerance = n > 0 ? kTolerance * right.cwiseAbs().maxCoeff() : 0;
   // Each round frees one unknown. The limit ends cycles caused by rounding near the minimum.
   for (Index round = 0; round <= 3 * n; ++round) {
+    endIfCancelled();
     while (!free.empty()) {
       const VectorXd target = solveFree(matrix, right, free);
       // Step until the first unknown reaches zero, and fix it there.

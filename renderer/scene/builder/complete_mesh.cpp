@@ -5,6 +5,8 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "scene/mesh_attributes.h"
 
 namespace chromeball {
@@ -52,10 +54,12 @@ void completeTangents(const Material& material, Mesh& mesh) {
   if (!slot) return;
   if (mesh.normals.empty()) makeFlat(mesh);
   if (!mesh.tangents.empty()) return repairTangents(mesh);
-  std::vector<vec2> uv(mesh.positions.size());
+  auto uv = longArray<vec2>(mesh.positions.size());
   if (hasSet(mesh, slot->uvSet))
-    std::ranges::transform(mesh.uvs[size_t(slot->uvSet)], uv.begin(),
-                           [&](const vec2& coordinates) { return slot->transform(coordinates); });
+    forRanges(uv.size(), [&](size_t begin, size_t end) {
+      const std::vector<vec2>& set = mesh.uvs[size_t(slot->uvSet)];
+      for (size_t i = begin; i < end; ++i) uv[i] = slot->transform(set[i]);
+    });
   computeTangents(mesh, uv);
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/work_monitor.h"
 #include "image/io/decode_image.h"
 #include "image/io/texel_file.h"
 #include "scene/mip_chain.h"
@@ -82,8 +83,11 @@ void decode(const Source& source, const GltfFile& file, TexelFile* texelFile) {
 void decodeInParallel(std::vector<Source>& sources, const GltfFile& file) {
   std::sort(sources.begin(), sources.end(),
             [](const Source& a, const Source& b) { return a.length > b.length; });
-  std::atomic<size_t> next = 0;
-  parallelFor(size_t(0), sources.size(), [&](size_t) { decode(sources[next++], file, nullptr); });
+  std::atomic<size_t> next = 0, done = 0;
+  parallelFor(size_t(0), sources.size(), [&](size_t) {
+    decode(sources[next++], file, nullptr);
+    reportWork("textures", double(++done) / double(sources.size()));
+  });
 }
 
 }  // namespace
@@ -103,7 +107,10 @@ void decodeImages(const GltfFile& file, const std::vector<ImageToDecode>& images
           Remedy{"memory", {}});
     return decodeInParallel(sources, file);
   }
-  for (const Source& source : sources) decode(source, file, cache.file.get());
+  for (size_t i = 0; i < sources.size(); ++i) {
+    decode(sources[i], file, cache.file.get());
+    reportWork("textures", double(i + 1) / double(sources.size()));
+  }
 }
 
 }  // namespace chromeball

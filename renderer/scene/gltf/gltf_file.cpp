@@ -45,6 +45,8 @@ GltfFile::GltfFile(const std::string& path, ExternalFiles external)
     readModel(root);
   } catch (const InputError&) {
     throw;
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception& e) {  // from JSON and glb.h
     fail("{}", firstLine(e.what()));
   }
@@ -155,6 +157,8 @@ Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const 
   }
   try {
     return readFile(folder / name);
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception& e) {
     fail("{}: {}", where, e.what());
   }

@@ -21,8 +21,8 @@ enum class ExternalFiles { Refuse, Allow };
 
 // An animation of the file and the time at which to show it.
 struct AnimationTime {
-  std::string name;      // or its index if it has no name; empty: the first animation
-  std::string location;  // of the setting, for the error if the animation does not exist
+  std::string name;                    // or its index if it has no name; empty: the first animation
+  std::string location = "animation";  // of the setting, for the error if it does not exist
   double seconds = 0;
   bool ifAny = false;  // a file without animations stays in its rest pose
 };
@@ -30,7 +30,7 @@ struct AnimationTime {
 // A variant of the file's materials (KHR_materials_variants).
 struct VariantChoice {
   std::string name;
-  std::string location;  // of the setting, for the error if the variant does not exist
+  std::string location = "variant";  // of the setting, for the error if it does not exist
 };
 
 // Options of loadGltf().

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What snapshots cost: samples per second of a session from which one is taken every 50 ms, over
+// those of one that is left alone. Both render in turn, for half a second each time.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <thread>
+
+#include "scene.h"
+#include "session/session.h"
+
+namespace chromeball {
+namespace {
+
+using namespace std::chrono_literals;
+
+double cpuOfProcess() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+// Samples per pixel and second of processor time, after the first passes.
+double rate(Session& session, const RenderDescription& description, bool watches) {
+  session.start();
+  while (!session.snapshot()) std::this_thread::sleep_for(10ms);
+  const double before = session.snapshot()->samples, start = cpuOfProcess();
+  const auto end = std::chrono::steady_clock::now() + 500ms;
+  while (std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(50ms);
+    if (watches) benchmark::DoNotOptimize(session.snapshot());
+  }
+  const double seconds = cpuOfProcess() - start;
+  const double samples = session.snapshot()->samples - before;
+  session.update(description);
+  return samples / seconds;
+}
+
+void snapshots(benchmark::State& state) {
+  const BenchmarkScene& s = BenchmarkScene::get(demo::Finish::Conductors);
+  RenderDescription d;
+  d.scene = std::make_shared<const Scene>(s.scene);
+  d.probe.map = std::make_shared<const Image>(s.probe.latLong());
+  d.lighting.strategy = "importance";
+  d.size = ImageSize{int(state.range(0)), int(state.range(1))};
+  d.settings.samples = kMaxSamples;
+  Session watched(d), alone(d);
+  double with = 0, without = 0;
+  for (auto _ : state) {
+    with += rate(watched, d, true);
+    without += rate(alone, d, false);
+  }
+  state.counters["throughput"] = with / without;
+}
+
+BENCHMARK(snapshots)
+    ->Args({640, 360})
+    ->Args({1920, 1080})
+    ->Unit(benchmark::kSecond)
+    ->Iterations(4)
+    ->UseRealTime();
+
+}  // namespace
+}  // namespace chromeball
