@@ -78,7 +78,7 @@ std::vector<Way> ways(const Image& plate) {
          far.shape.radius = 1e5f;
        }},
       {"source", [](Render& r) { r.description.sources.push_back(window()); }},
-      {"suns and rest apart", [](Render& r) { r.mixesLight = true; }, "", 0},
+      {"suns and rest apart", [](Render& r) { r.mixesLight = true; }, "composite"},
       {"light groups", [](Render& r) { r.description.settings.lightGroups = true; }},
       {"shadow mattes", [](Render& r) { r.description.settings.shadowMattes = true; }},
       {"layer irradiance", [](Render& r) { layer(r, Aov::Irradiance); }},
@@ -205,8 +205,6 @@ Image rendered(const Render& r) {
       else
         for (size_t i = 0; i < sum.texels.size(); ++i) sum.texels[i] += image.texels[i];
     }
-    if (const auto& composite = r.description.composite)  // which each of the two shows
-      for (size_t i = 0; i < sum.texels.size(); ++i) sum.texels[i] -= composite->plate.texels[i];
     return sum;
   }
   std::vector<D> parts;
@@ -251,9 +249,16 @@ std::optional<D> refused(const Render& r) {
   return conflictIn(d) ? std::optional(d) : std::nullopt;
 }
 
+// Of four repeats, the variance is too uncertain for a test so far in the tail: who fails is asked
+// again, with more.
+bool agree(const std::vector<Image>& found, const std::vector<Image>& expected) {
+  constexpr int kTests = 500;             // at most
+  constexpr double kSignificance = 0.01;  // of all tests together
+  return agreement(found, expected).pValue > sidak(kSignificance, kTests);
+}
+
 TEST(SlowCapabilityPairs, AllowedPairsRenderThePictureOfThePlainPath) {
-  constexpr int kRepeats = 4, kTests = 500;  // of two features at most
-  constexpr double kSignificance = 0.01;     // of all tests together
+  constexpr int kRepeats = 4;
   const std::vector<Image> expected = repeats(plain(), 24, 1000);
   Render empty = plain(false);
   empty.description.settings.samples = 1u << 13;
@@ -284,11 +289,12 @@ TEST(SlowCapabilityPairs, AllowedPairsRenderThePictureOfThePlainPath) {
       }
       ++allowed;
       const double bias = a.bias + b.bias;
-      if (bias > 0)
+      if (bias > 0) {
         EXPECT_NEAR(meanOfAll(found) / light, 1, bias + 0.01) << what;
-      else
-        EXPECT_GT(agreement(found, expected).pValue, sidak(kSignificance, kTests))
+      } else if (!agree(found, expected)) {
+        EXPECT_TRUE(agree(repeats(r, 6 * kRepeats, seed += 100), expected))
             << what << ": " << meanOfAll(found) / light;
+      }
     }
   RecordProperty("allowed", allowed);
   RecordProperty("refused", refusals);

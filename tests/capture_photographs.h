@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "probe/capture/capture_view.h"
+#include "probe/capture/match_views.h"
 #include "probe/probe.h"
 
 namespace chromeball {

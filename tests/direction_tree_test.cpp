@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The quadtree of a guide: a density over the sphere that its samples follow.
-#include "guiding/direction_tree.h"
+#include "guiding/light_guide.h"
 
 #include <gtest/gtest.h>
 

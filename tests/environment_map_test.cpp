@@ -9,7 +9,7 @@
 #include "probe/sky.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"
-#include "study/row.h"
+#include "study/study.h"
 #include "test_probes.h"
 #include "test_scene.h"
 

@@ -7,12 +7,11 @@
 #include <numeric>
 
 #include "base/byte_planes.h"
-#include "base/checksum.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "image/io/exr_rows_writer.h"
 #include "image/io/exr_state.h"
 #include "image/io/read_image.h"
-#include "image/io/write_exr.h"
 #include "run_command.h"
 
 namespace chromeball::exr_state_test {

@@ -87,7 +87,7 @@ const std::map<std::string, std::vector<std::string>> kIncludedBy = {
     {"OpenImageIO/", {"renderer/image/imageio/"}},
     {"OpenEXR/", {"renderer/image/io/exr_", "tests/exr_files_test.cpp"}},
     {"png.h",
-     {"renderer/image/io/png_reader.cpp", "renderer/image/io/encode_png.cpp",
+     {"renderer/image/io/png_color.cpp", "renderer/image/io/encode_png.cpp",
       "tests/image_readers_test.cpp"}},
     {"jpeglib.h", {"renderer/image/io/jpeg_reader.cpp", "tests/image_readers_test.cpp"}},
     {"webp/", {"renderer/image/io/decode_image.cpp"}},

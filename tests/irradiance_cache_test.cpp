@@ -11,7 +11,7 @@
 #include "probe/synth.h"
 #include "scene/extended_surface.h"
 #include "small_scenes.h"
-#include "study/row.h"
+#include "study/study.h"
 
 namespace chromeball::irradiance_cache_test {
 namespace {

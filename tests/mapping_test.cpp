@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "probe/detect_mapping.h"
+#include "probe/load.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball::mapping_test {

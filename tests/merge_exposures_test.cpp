@@ -8,8 +8,8 @@
 #include "bracket.h"
 #include "image/tonemap.h"
 #include "probe/capture/exposure.h"
-#include "probe/capture/filter_transmission.h"
 #include "probe/capture/find_shift.h"
+#include "probe/capture/merge_photographs.h"
 #include "probe/load.h"
 #include "run_command.h"
 

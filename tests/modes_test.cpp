@@ -7,7 +7,7 @@
 #include "probe/synth.h"
 #include "scene/extended_surface.h"
 #include "session/denoised_image.h"
-#include "study/row.h"
+#include "study/study.h"
 #include "test_probes.h"
 #include "test_scene.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers in options and text files, with or without a sign.
-#include "base/number_text.h"
+#include "base/text.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "run_command.h"
-#include "session/frame_scene.h"
+#include "session/run_job.h"
 #include "shared_data.h"
 #include "trace/built_geometry.h"
 

@@ -139,7 +139,7 @@ TEST(SessionCallbacks, ErrorsOfEntriesFromMemoryNameTheirPlaces) {
   d.camera.optics = Optics{};
   EXPECT_TRUE(errorOf(d).starts_with("camera.optics: ")) << errorOf(d);
   d = ballDescription();
-  d.sources = {{.name = "window", .corners = {{1, 1}, {3, 1}, {3, 3}}}};
+  d.sources = {{.name = "window", .corners = {{1, 1}, {3000, 1}, {3, 3}}}};
   EXPECT_TRUE(errorOf(d).starts_with("sources[0]: ")) << errorOf(d);
 }
 

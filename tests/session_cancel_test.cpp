@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "gltf_writer.h"
 #include "image/io/encode_png.h"
 #include "image/io/write_image.h"

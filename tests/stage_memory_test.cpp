@@ -13,7 +13,7 @@
 #include "instrumented.h"
 #include "probe/synth.h"
 #include "run_command.h"
-#include "session/image_memory.h"
+#include "session/memory_estimate.h"
 #include "small_model.h"
 #include "whole_stage.h"
 

@@ -7,7 +7,7 @@
 #include "approximate/gather_irradiance.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "scene/camera.h"
 #include "transport/first_surface.h"
 

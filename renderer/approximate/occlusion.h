@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 
+#include "film/aov.h"
 #include "math/vec.h"
 #include "trace/ray.h"
+#include "transport/integrator.h"
 
 namespace chromeball {
 
@@ -35,5 +38,38 @@ SkyRay cosineSkyRay(const World& world, const Surface& surface, const vec3& norm
 // Of constant density over the hemisphere.
 SkyRay uniformSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
                      RayMask visible, PathContext& context);
+
+// Layers that need rays of their own at the first surface: ambient occlusion, bent normals (HDRI
+// book, section 9.8.2) and irradiance (figure 9.38c).
+
+// Another integrator, which also fills these layers of FirstHit, one ray or path each a sample. The
+// picture, its estimate of the light beyond the limits of depth, and what guides learn from it are
+// those without them.
+//   ambientOcclusion  an estimate of 1 / pi integral of V cos, V the visibility of the sky
+//   unoccluded        of the vector integral of V cos (or of V) times the direction
+//   irradiance        pi times the radiance of a white Lambertian surface in the place of the first
+//                     one, the rest of the scene as it is
+class SurfaceLayers : public Integrator {
+ public:
+  // All arguments must outlive this, except `tracer`, which traces the picture.
+  SurfaceLayers(const Integrator& picture, const PathTracer& tracer, std::span<const Aov> wanted,
+                const Occlusion& occlusion);
+
+  Sample sample(const CameraSample& camera, PathContext& context) const override;
+  void sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample, PathContext& context,
+                  std::span<Sample> samples) const override;
+  std::vector<Accumulation> layers() const override { return picture_.layers(); }
+  std::vector<std::string> groups() const override { return picture_.groups(); }
+  RayMask visible() const override { return picture_.visible(); }
+
+ private:
+  // Returns the defect of the irradiance, if it has one; the sample is then excluded.
+  std::optional<Defect> measure(const CameraSample& camera, PathContext& context) const;
+
+  const Integrator& picture_;
+  PathTracer tracer_;
+  Occlusion occlusion_;
+  bool wantsOcclusion_, wantsBent_, wantsIrradiance_;
+};
 
 }  // namespace chromeball

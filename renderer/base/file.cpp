@@ -20,8 +20,8 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/text.h"
-#include "base/work_monitor.h"
 
 namespace chromeball {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/work_monitor.h"
+#include "base/progress.h"
 
 namespace chromeball {
 

@@ -6,7 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
-#include "base/work_monitor.h"
+#include "base/progress.h"
 
 namespace chromeball {
 namespace {

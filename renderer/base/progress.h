@@ -2,7 +2,9 @@
 // Reports the progress of long work.
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <utility>
 
@@ -28,5 +30,59 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+// Who waits for long work, such as reading a scene: learns how far it is, and may end it.
+
+// Called from all threads of the work.
+class WorkMonitor {
+ public:
+  virtual ~WorkMonitor() = default;
+
+  // Asked every few milliseconds.
+  virtual bool isCancelled() const = 0;
+  // The fraction of a stage that is done: 0 when it begins; NaN if unknown.
+  virtual void report(const char* /*stage*/, double /*fraction*/) {}
+};
+
+// Ends the work as soon as a flag is set, which must outlive it.
+class StopMonitor : public WorkMonitor {
+ public:
+  explicit StopMonitor(const std::atomic<bool>& stop) : stop_(stop) {}
+  bool isCancelled() const override { return stop_; }
+
+ private:
+  const std::atomic<bool>& stop_;
+};
+
+// While it lives, the monitor is that of this thread's work and of the loops that it starts
+// (base/parallel.h). Null: none, as at first.
+class MonitoredWork {
+ public:
+  explicit MonitoredWork(WorkMonitor* monitor);
+  ~MonitoredWork();
+  MonitoredWork(const MonitoredWork&) = delete;
+  MonitoredWork& operator=(const MonitoredWork&) = delete;
+
+ private:
+  WorkMonitor* const outer_;
+};
+
+WorkMonitor* currentMonitor();
+
+// Throws Interrupted if this thread's work is cancelled. For loops outside of base/parallel.h: a
+// turn may take some milliseconds, and should take a microsecond, since this takes nanoseconds.
+void endIfCancelled();
+
+void reportWork(const char* stage, double fraction);
+
+// Calls body(begin, end) for parts of [0, count) of at most `size`, with endIfCancelled() before
+// each.
+template <class Body>
+void forParts(size_t count, size_t size, const Body& body) {
+  for (size_t begin = 0; begin < count; begin += size) {
+    endIfCancelled();
+    body(begin, count - begin < size ? count : begin + size);
+  }
+}
 
 }  // namespace chromeball

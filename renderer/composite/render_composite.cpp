@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "approximate/surface_layers.h"
+#include "approximate/occlusion.h"
 
 namespace chromeball {
 namespace {

@@ -6,7 +6,6 @@
 #include <bit>
 #include <filesystem>
 
-#include "base/checksum.h"
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/json_text.h"

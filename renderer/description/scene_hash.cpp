@@ -5,7 +5,6 @@
 #include <string_view>
 #include <type_traits>
 
-#include "base/checksum.h"
 #include "base/hash.h"
 
 namespace chromeball {

@@ -27,7 +27,7 @@ struct FirstHit {
   // Radiance found before the path's second scattering by a broad lobe; none: all of the path's.
   std::optional<Rgb> direct;
 
-  // Of approximate/surface_layers.h; of one sample.
+  // Of approximate/occlusion.h; of one sample.
   float ambientOcclusion = 0;  // 1 where the sky is visible
   vec3 unoccluded{0};          // its direction
   Rgb irradiance{0};           // W/m^2

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "base/error.h"
-#include "base/number_text.h"
 #include "base/text.h"
 #include "image/size_limits.h"
 

@@ -46,4 +46,8 @@ SceneFile readSceneFile(const std::string& path);
 // Throws InputError.
 SceneFile openScene(const std::string& path);
 
+// `over` replaces settings of the file, among them those that it stores with models, camera and
+// composite. Throws InputError for settings that exclude each other.
+void overrideSettings(SceneFile& file, const Settings& over);
+
 }  // namespace chromeball

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/number_text.h"
 #include "base/text.h"
 #include "front/arguments.h"
 

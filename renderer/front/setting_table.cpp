@@ -3,8 +3,6 @@
 
 #include <stdexcept>
 
-#include "front/setting_rows.h"
-
 namespace chromeball {
 
 const std::vector<Setting>& settingTable() {

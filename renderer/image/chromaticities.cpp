@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/chromaticities.h"
 
-#include <cmath>
+#include <fmt/format.h>
 #include <glm/matrix.hpp>
+
+#include <cmath>
 
 namespace chromeball {
 namespace {
@@ -71,6 +73,14 @@ std::optional<glm::dmat3> toRec709(const Chromaticities& space) {
 void convertColor(Image& image, const glm::dmat3& matrix) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) image.setRgb(x, y, Rgb(matrix * dvec3(image.rgb(x, y))));
+}
+
+Message conversionNote(const std::filesystem::path& path, const Chromaticities& from) {
+  return {Message::Kind::Note,
+          fmt::format("{}: its colour is converted to Rec. 709 from red ({:.4g}, {:.4g}), green "
+                      "({:.4g}, {:.4g}), blue ({:.4g}, {:.4g}), white ({:.4g}, {:.4g})",
+                      path.string(), from.red.x, from.red.y, from.green.x, from.green.y,
+                      from.blue.x, from.blue.y, from.white.x, from.white.y)};
 }
 
 }  // namespace chromeball

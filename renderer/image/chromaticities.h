@@ -5,8 +5,11 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
+
+#include <filesystem>
 #include <optional>
 
+#include "base/message.h"
 #include "image/image.h"
 
 namespace chromeball {
@@ -28,5 +31,8 @@ std::optional<glm::dmat3> toRec709(const Chromaticities& space);
 
 // Converts the first three channels.
 void convertColor(Image& image, const glm::dmat3& matrix);
+
+// That the colour of a file is converted to Rec. 709 from these primaries.
+Message conversionNote(const std::filesystem::path& path, const Chromaticities& from);
 
 }  // namespace chromeball

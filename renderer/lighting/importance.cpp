@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 
 namespace chromeball {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "image/io/exr_rows_writer.h"
 #include "image/io/exr_state.h"
-#include "image/io/write_exr.h"
 #include "session/develop_image.h"
 #include "session/job_description.h"
 #include "session/job_report.h"

@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/io/exr_state.h"
-#include "session/image_memory.h"
 #include "session/job_description.h"
+#include "session/memory_estimate.h"
 
 namespace chromeball {
 namespace {

@@ -34,7 +34,7 @@ inline constexpr const char* kMappingAttribute = "mapping";
 
 // `mapping` is a name as on the command line. "auto" takes the mapping from the `envmap` or
 // `mapping` attribute of an EXR, or the comment `mapping` of an HDR, else detects it
-// (detect_mapping.h). A lat-long map with `envmap`
+// (load.h). A lat-long map with `envmap`
 // has +Z in its centre and +X at its left quarter (OpenEXR's ImfEnvmap.h); it is turned by 180
 // degrees, to agree with the cube map of the same environment. A lat-long file of any shape keeps
 // its texels; others are converted at latLongSize() (convert.h). Throws InputError; it starts with
@@ -50,5 +50,18 @@ Messages probeMessages(const LoadedProbe& probe, const std::filesystem::path& pa
 
 // The warnings about the light itself: the probe is black, or clipped.
 std::vector<std::string> lightWarnings(const LoadedProbe& probe, const std::filesystem::path& path);
+
+// Detects the mapping of an image from its shape and its texels.
+
+struct DetectedMapping {
+  Mapping mapping;
+  std::string reason;  // completes a sentence: "because its shape is 2:1"
+  bool certain;        // false: the user should be warned
+};
+
+// The shape decides; for squares and crosses, also whether the image is black where the mapping
+// shows no direction. An angular map and an ideal mirror ball may both be black outside the same
+// disc: their texels do not tell which they are, and the angular map is the usual one.
+DetectedMapping detectMapping(const Image& image);
 
 }  // namespace chromeball

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "film/noise.h"
+#include "film/rows.h"
 #include "render/render_settings.h"
-#include "render/tile_grid.h"
 #include "transport/context.h"
 #include "transport/world.h"
 

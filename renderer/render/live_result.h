@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "film/rows.h"
 #include "render/render.h"
-#include "render/tile_grid.h"
 
 namespace chromeball {
 

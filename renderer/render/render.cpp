@@ -7,12 +7,12 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
+#include "film/rows.h"
 #include "render/guide_training.h"
 #include "render/live_result.h"
 #include "render/pixel_renderer.h"
 #include "render/render_state.h"
-#include "render/tile_grid.h"
 
 namespace chromeball {
 namespace {

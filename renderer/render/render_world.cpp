@@ -5,7 +5,7 @@
 
 #include "approximate/cached_integrator.h"
 #include "approximate/environment_map.h"
-#include "approximate/surface_layers.h"
+#include "approximate/occlusion.h"
 #include "base/progress.h"
 #include "render/render.h"
 #include "transport/light_groups.h"

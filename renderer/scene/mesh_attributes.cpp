@@ -9,7 +9,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "scene/transform.h"
 
 namespace chromeball {

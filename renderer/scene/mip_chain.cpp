@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/work_monitor.h"
+#include "base/progress.h"
 
 namespace chromeball {
 namespace {

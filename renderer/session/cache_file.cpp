@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "base/archive.h"
-#include "base/checksum.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "session/job_description.h"
 
 namespace chromeball {

@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "denoise/denoise.h"
+#include "film/noise.h"
 #include "image/io/write_image.h"
 #include "render/render.h"
 
@@ -37,5 +38,20 @@ std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, double noise,
 
 // The same with an image that is already denoised. Returns the remaining noise.
 double addDenoised(Denoised denoised, double noise, OutputImage& image);
+
+// The noise of an image.
+
+struct ImageNoise {
+  double noise, median, p95;  // fractions (film/noise.h)
+  Image variance;             // of each pixel's mean, RGB
+
+  explicit ImageNoise(const PixelErrors& errors) {
+    const std::vector<glm::dvec4> squared = squaredStandardErrors(errors);
+    const NoiseQuantiles quantiles = noiseQuantiles(errors, squared);
+    noise = estimateNoise(errors).noise;
+    median = quantiles.median, p95 = quantiles.p95;
+    variance = varianceImage(squared, errors.width, errors.height);
+  }
+};
 
 }  // namespace chromeball

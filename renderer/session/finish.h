@@ -13,7 +13,6 @@
 #include "image/io/write_image.h"
 #include "render/render.h"
 #include "session/denoised_image.h"
-#include "session/image_noise.h"
 
 namespace chromeball {
 

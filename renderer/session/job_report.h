@@ -4,6 +4,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "base/message.h"
+#include "description/render_description.h"
 #include "session/run_job.h"
 
 namespace chromeball {
@@ -24,5 +26,16 @@ Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
 
 // Those that depend on the samples.
 Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render);
+
+// The output files of a job: images and statistics.
+
+// Checks, before rendering, that the outputs can be written. Returns warnings about settings that
+// have no effect. Throws InputError or RunError.
+Messages checkOutputs(const RenderDescription& job);
+
+// Call when all files are read (`inputs`; the scene file itself is added) and no other input error
+// can occur. Throws InputError if an output would overwrite an input, and makes the folders that
+// the scene file names for its images.
+void prepareOutputs(const RenderDescription& job, std::vector<std::string> inputs);
 
 }  // namespace chromeball

@@ -5,14 +5,14 @@
 #include <cassert>
 
 #include "base/error.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "description/capabilities.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/model_cache.h"
 #include "session/load_messages.h"
 #include "session/memory_estimate.h"
 #include "session/place_models.h"
-#include "session/prepare_composite.h"
+#include "session/run_composite.h"
 #include "session/scene_lighting.h"
 
 namespace chromeball {

@@ -10,7 +10,7 @@
 #include "probe/load.h"
 #include "scene/camera_view.h"
 #include "scene/scene.h"
-#include "session/choose_camera.h"
+#include "session/place_models.h"
 #include "session/scene_lighting.h"
 #include "trace/room.h"
 

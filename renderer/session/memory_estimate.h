@@ -3,6 +3,8 @@
 // the probe and the images are allocated.
 #pragma once
 
+#include "base/memory.h"
+#include "render/render.h"
 #include "session/load_scene.h"
 
 namespace chromeball {
@@ -30,5 +32,16 @@ std::string inWords(const MemoryEstimate& estimate);
 
 // Throws InputError if the peak exceeds the limit.
 void checkMemory(const LoadedScene& loaded);
+
+// Estimates the memory of a render before it is allocated.
+
+// The program, its libraries and its fixed tables; measured.
+inline constexpr double kProcessBytes = 3e7;
+
+// Peak memory of the film, the layers and the output images, in bytes.
+double imageBytes(const RenderSettings& settings);
+
+// What snapshots of a session take besides: the film again, and two images (live_image.h).
+double snapshotBytes(const RenderSettings& settings);
 
 }  // namespace chromeball

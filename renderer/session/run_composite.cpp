@@ -5,8 +5,12 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "composite/local_scene.h"
+#include "composite/plate.h"
 #include "composite/reflectance.h"
+#include "description/render_description.h"
+#include "session/load_scene.h"
 #include "session/scene_lighting.h"
 
 namespace chromeball {
@@ -101,6 +105,146 @@ JobResult renderComposite(const LoadedScene& loaded, const PreparedScene& prepar
   if (loaded.plateScale)  // nothing better is known
     for (Message& message : messages) message.remedy.reset();
   return {std::move(finished), std::move(rendered.result), std::move(messages)};
+}
+
+namespace {
+
+// Whether the probe is not the only light, emitting surfaces aside.
+bool hasLamps(const Scene& scene) {
+  return !scene.lights.empty() || !scene.suns.empty() || !scene.ambient.empty();
+}
+
+constexpr std::string_view kGround = "ground";
+
+// Whether the local scene names it, and no node of the models has its name.
+bool namesTheGround(const CompositeEntry& entry, const Scene& scene) {
+  return std::ranges::find(entry.localScene, kGround) != entry.localScene.end() &&
+         std::ranges::find(scene.nodeNames, kGround) == scene.nodeNames.end();
+}
+
+bool hasGround(const CompositeDescription& composite, const Scene& scene) {
+  using enum CompositeDescription::GroundPlane;
+  return composite.ground == Always ||
+         (composite.ground == IfNamed && namesTheGround(composite.entry, scene));
+}
+
+// The part inside a box or sphere.
+Ground clipped(Ground ground, const Surroundings& around, const std::string& location) {
+  const bool isBox = around.shape == Surroundings::Shape::Box;
+  const float above = ground.height - around.center.y;
+  const float side =
+      std::sqrt(std::max(0.5f * (around.radius * around.radius - above * above), 0.0f));
+  const vec2 centre(around.center.x, around.center.z);
+  const vec2 min = isBox ? vec2(around.min.x, around.min.z) : centre - side;
+  const vec2 max = isBox ? vec2(around.max.x, around.max.z) : centre + side;
+  ground.min = glm::max(ground.min, min);
+  ground.max = glm::min(ground.max, max);
+  const bool isInside = !isBox || (ground.height >= around.min.y && ground.height <= around.max.y);
+  if (!isInside || !(ground.min.x < ground.max.x && ground.min.y < ground.max.y))
+    throwInput("{}: the ground is outside of [surroundings]; check `ground_height`", location);
+  return ground;
+}
+
+void placeGround(const RenderDescription& job, LoadedScene& loaded) {
+  const CompositeDescription& composite = *job.composite;
+  const std::string location =
+      job.origins.of(job.origins.has("composite.ground") ? "composite.ground" : "shadow-catcher");
+  if (loaded.surroundings && loaded.room)
+    throwInput(
+        "{}: the ground needs a distant probe, or a box or sphere as [surroundings]; model it",
+        location);
+  const double height = composite.groundHeight - loaded.origin.y;
+  const Bounds objects = bounds(loaded.scene);
+  Ground ground =
+      groundAround(loaded.camera, float(job.settings.width) / float(job.settings.height), objects,
+                   float(height), location);
+  if (loaded.surroundings) ground = clipped(ground, *loaded.surroundings, location);
+  const double depth = double(ground.height) - double(objects.min.y);
+  if (depth > 1e-3 * glm::length(objects.size()))
+    loaded.messages.push_back(
+        {Message::Kind::Warning,
+         fmt::format("{}: the model reaches {:.3g} m below the ground; move it, or give "
+                     "`ground_height`",
+                     location, depth)});
+  addGround(loaded.scene, ground, composite.entry.groundReflectance);
+}
+
+}  // namespace
+
+void prepareLocalScene(LoadedScene& loaded) {
+  RenderDescription& job = loaded.description;
+  CompositeDescription& composite = *job.composite;
+  const CompositeEntry& entry = composite.entry;
+  Scene& scene = loaded.scene;
+  const std::string location = job.origins.of("composite.entry");
+  std::vector<NamedSetting> localScene;
+  for (size_t i = 0; i < entry.localScene.size(); ++i)
+    localScene.push_back(
+        {entry.localScene[i], job.origins.of(elementName("composite.entry.localScene", i))});
+  if (hasGround(composite, scene)) {
+    std::erase_if(localScene, [&](const NamedSetting& node) { return node.name == kGround; });
+    placeGround(job, loaded);
+    localScene.push_back({kGroundNode, location});
+  }
+  loaded.isObject = findObjects(scene, localScene, location);
+  if (composite.choosesReflectance && hasLamps(scene))
+    composite.reflectance = CompositeDescription::Reflectance::Plate;
+  if (composite.reflectance == CompositeDescription::Reflectance::Flat) {
+    const std::string reflectance = job.origins.of("composite.reflectance");
+    if (!flatNormal(scene, loaded.isObject))
+      throwInput("{}: the local scene is not flat; give \"plate\"", reflectance);
+    if (isLayered(scene, loaded.isObject))
+      throwInput(
+          "{}: needs matte surfaces, and there are coats, sheen or transmission; give "
+          "\"plate\"",
+          reflectance);
+    if (job.surroundings)
+      throwInput("{}: needs a distant probe, and there are [surroundings]; give \"plate\"",
+                 reflectance);
+    if (hasLamps(scene))
+      throwInput("{}: needs the probe as the only light, and there are lamps; give \"plate\"",
+                 reflectance);
+  }
+  if (composite.reflectance != CompositeDescription::Reflectance::Model) {
+    loaded.projection =
+        std::make_unique<Projection>(loaded.camera, job.settings.width, job.settings.height);
+    makeProjected(scene, loaded.isObject, *loaded.projection);
+  }
+  if (composite.specular || composite.roughness)
+    makeGlossy(scene, loaded.isObject, float(composite.specular.value_or(1)),
+               float(composite.roughness.value_or(0.2)));
+}
+
+void scaleProbeByPlate(LoadedScene& loaded) {
+  const RenderDescription& job = loaded.description;
+  if (!job.probe.isScaledByPlate) return;
+  const std::string location = job.origins.of("probe.scale");
+  if (hasLamps(loaded.scene))
+    throwInput(
+        "{}: scale = \"plate\" needs the probe as the only light; the model has lights of its "
+        "own: leave them out with `lights = \"off\"` in [lighting]",
+        location);
+  Scene local = loaded.scene;
+  local.instances.clear();
+  for (size_t i = 0; i < loaded.isObject.size(); ++i)
+    if (!loaded.isObject[i]) local.instances.push_back(loaded.scene.instances[i]);
+  const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
+  const std::vector<size_t> pixels =
+      pixelsThatShow(int(ground - local.nodeNames.begin()), local, loaded.camera,
+                     job.settings.width, job.settings.height);
+  const Rgb irradiance = irradianceOn(loaded.probe, vec3(0, 1, 0));
+  const CompositeEntry& entry = job.composite->entry;
+  const auto isPositive = [](const Rgb& c) { return c.x > 0 && c.y > 0 && c.z > 0; };
+  if (pixels.empty()) throwInput("{}: no pixel shows the ground", location);
+  if (!isPositive(irradiance))
+    throwInput("{}: the probe gives the ground no light in one channel or all", location);
+  PlateScale scale =
+      scaleByPlate(job.composite->plate, pixels, irradiance, entry.groundReflectance);
+  if (!isPositive(scale.scale) || !isFinite(scale.scale))
+    throwInput("{}: the plate is black where it shows the ground, in one channel or all", location);
+  loaded.probe = scaled(loaded.probe, scale.scale);
+  loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
+  loaded.plateScale = scale;
 }
 
 }  // namespace chromeball

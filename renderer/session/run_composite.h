@@ -2,6 +2,7 @@
 // Renders a job with [composite].
 #pragma once
 
+#include "session/load_scene.h"
 #include "session/run_job.h"
 
 namespace chromeball {
@@ -10,5 +11,15 @@ namespace chromeball {
 JobResult renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
                           const Progress& progress, const std::atomic<bool>& stop,
                           RenderControl* control);
+
+// The local scene of a composite, and the probe's scale by its plate.
+
+// Adds the ground if the composite has one, determines the objects and the local scene, and sets
+// the local scene's reflectance and gloss. Throws InputError.
+void prepareLocalScene(LoadedScene& loaded);
+
+// Scales the probe as the plate tells, if it is to be, after prepareLocalScene(). Throws
+// InputError.
+void scaleProbeByPlate(LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "lighting/finite_surroundings.h"
 #include "lighting/scene_sources.h"
 #include "lighting/suns.h"

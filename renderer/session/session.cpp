@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "description/describe.h"
 #include "render/live_result.h"
 #include "render/render_state.h"

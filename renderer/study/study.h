@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "description/render_description.h"
 
 namespace chromeball {
 
@@ -33,7 +36,7 @@ uint64_t seedOf(const RenderKey& key, uint64_t studySeed);
 
 struct Study {
   std::string folder;
-  std::vector<std::string> strategies;  // to render; names of rows (row.h)
+  std::vector<std::string> strategies;  // to render; names of rows (study.h)
   std::vector<Budget> budgets;          // to render; ascending
   int repeats = 4;                      // of each strategy and budget
   std::string baseline;                 // one of the strategies
@@ -59,5 +62,42 @@ struct Study {
   // favour any of them.
   std::vector<RenderKey> renders() const;
 };
+
+// What a study compares: a lighting strategy, with the integrator and the ways of rendering that it
+// is combined with.
+
+// A way of rendering besides the lighting strategy.
+enum class Mode {
+  Adaptive,
+  Guide,
+  Regularize,
+  GlassShadows,
+  Denoise,
+  AmbientOcclusion,
+  ReflectionOcclusion
+};
+
+// By name: STRATEGY, or STRATEGY+MODE+..., as "importance+regularize+denoise" or
+// "suns+environment-map+ao". The integrators but `path` are such modes, and so are
+// "diffuse-depth:N", "specular-depth:N" and "irradiance-cache:ERROR".
+struct Row {
+  std::string strategy;  // complete name ("median-cut:64")
+  IntegratorKind integrator = IntegratorKind::Path;
+  std::vector<Mode> modes;  // without repetition, in the order of Mode
+  std::optional<int> diffuseDepth, specularDepth;
+  std::optional<float> cacheError;
+
+  bool has(Mode mode) const;
+  bool isBiased() const;  // by more than its strategy
+  std::string name() const;
+  // `settings` with these modes, and no others.
+  RenderSettings applied(RenderSettings settings) const;
+  // The same of a description, with the strategy.
+  void applyTo(RenderDescription& description) const;
+};
+
+// `location` (an option) begins the InputError thrown for an unknown mode. The strategy is resolved
+// but not checked.
+Row rowNamed(const std::string& name, const std::string& location);
 
 }  // namespace chromeball

@@ -12,14 +12,14 @@
 #include "render/render.h"
 #include "session/load_scene.h"
 #include "study/render_store.h"
-#include "study/row.h"
+#include "study/study.h"
 
 namespace chromeball {
 
 class StudyRun {
  public:
-  // Builds all rows (row.h), including that of the reference. Throws InputError for unknown names.
-  // All arguments must outlive the run.
+  // Builds all rows (study.h), including that of the reference. Throws InputError for unknown
+  // names. All arguments must outlive the run.
   StudyRun(const Study& study, const RenderStore& store, const LoadedScene& loaded,
            const RenderSettings& settings);
 

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "scene/extended_surface.h"
 #include "trace/accel.h"
 #include "trace/built_geometry.h"

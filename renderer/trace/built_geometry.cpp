@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "trace/filter.h"
 
 namespace chromeball {

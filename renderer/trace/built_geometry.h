@@ -50,7 +50,7 @@ class BuiltGeometry {
 
   // Adds the geometry, which it takes, to the scene.
   static void attach(RTCSceneTy* scene, RTCGeometryTy* geometry, uint32_t id, RayMask mask);
-  // Builds the structure. Throws Interrupted (base/work_monitor.h).
+  // Builds the structure. Throws Interrupted (base/progress.h).
   static void commit(RTCSceneTy* scene);
 
  private:

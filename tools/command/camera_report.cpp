@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/json_text.h"
-#include "front/camera_file.h"
+#include "front/scene_file_camera.h"
 #include "json_values.h"
 
 namespace chromeball {

@@ -15,8 +15,8 @@
 #include "commands.h"
 #include "messages.h"
 #include "option_typos.h"
-#include "session/image_memory.h"
 #include "session/machine.h"
+#include "session/memory_estimate.h"
 
 namespace chromeball {
 namespace {

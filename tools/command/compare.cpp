@@ -21,7 +21,7 @@
 #include "study/report/report.h"
 #include "study/report/report_images.h"
 #include "study/result_tables.h"
-#include "study/row.h"
+#include "study/study.h"
 #include "study/study_run.h"
 #include "study/verdict.h"
 #include "thread_limit.h"

@@ -13,7 +13,7 @@
 #include "messages.h"
 #include "progress_bar.h"
 #include "session/denoised_image.h"
-#include "session/image_memory.h"
+#include "session/memory_estimate.h"
 
 namespace chromeball {
 namespace {

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "session/denoised_image.h"
-#include "session/image_noise.h"
 
 namespace chromeball {
 

@@ -10,7 +10,7 @@
 #include "input_image.h"
 #include "json_values.h"
 #include "messages.h"
-#include "probe/capture/filter_transmission.h"
+#include "probe/capture/merge_photographs.h"
 #include "probe_commands.h"
 #include "probe_merge_options.h"
 

@@ -14,7 +14,7 @@
 #include "relight/stage/light_stage.h"
 #include "relight/stage/relit_stage.h"
 #include "relight/stage/stage_photographs.h"
-#include "session/image_memory.h"
+#include "session/memory_estimate.h"
 #include "viewers/relight_server.h"
 
 namespace chromeball {

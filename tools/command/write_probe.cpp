@@ -10,7 +10,6 @@
 #include "image/io/write_image.h"
 #include "image/size_limits.h"
 #include "messages.h"
-#include "probe/detect_mapping.h"
 #include "probe/load.h"
 
 namespace chromeball {

@@ -75,7 +75,7 @@ reports=$build/reports
 rm -rf "$reports"
 mkdir -p "$reports"
 export ASAN_OPTIONS=log_path=$reports/report
-export LSAN_OPTIONS=suppressions=$suppressions/leak.txt
+export LSAN_OPTIONS=suppressions=$suppressions/leak.txt:print_suppressions=0
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=suppressions=$suppressions/thread.txt:log_path=$reports/report
 

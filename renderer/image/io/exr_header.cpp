@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/exr_header.h"
 
+#include <OpenEXR/ImfThreading.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/error.h"
@@ -164,6 +167,14 @@ class ExrHeaders {
 
 int checkExrHeaders(const fs::path& path, uint64_t maxNumbers) {
   return ExrHeaders(path, maxNumbers).check();
+}
+
+void useExrThreads() {
+  [[maybe_unused]] static const bool once = [] {
+    if (Imf::globalThreadCount() == 0)
+      Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
+    return true;
+  }();
 }
 
 }  // namespace chromeball

@@ -14,4 +14,7 @@ namespace chromeball {
 // together.
 int checkExrHeaders(const std::filesystem::path& path, uint64_t maxNumbers = kMaxImageFloats);
 
+// Lets OpenEXR compress on all cores, unless the process has chosen a number of threads for it.
+void useExrThreads();
+
 }  // namespace chromeball

@@ -18,11 +18,10 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "image/io/color_channels.h"
 #include "image/io/exr_header.h"
 #include "image/io/exr_metadata.h"
-#include "image/io/exr_threads.h"
 #include "image/io/unreadable.h"
 
 namespace chromeball {

@@ -18,9 +18,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "image/io/exr_header.h"
 #include "image/io/exr_metadata.h"
 #include "image/io/exr_state.h"
-#include "image/io/exr_threads.h"
 
 namespace chromeball {
 namespace {
@@ -190,6 +190,33 @@ double ExrRowsWriter::bufferBytes(int width, size_t channels) {
   const double row = double(sizeof(float)) * width * double(channels);
   const double atOnce = std::max(double(sizeof(float)) * double(kFloatsWrittenAtOnce), row);
   return 1.5 * atOnce + 2.0 * std::thread::hardware_concurrency() * 3 * row;
+}
+
+namespace {
+
+std::vector<std::string> channelsOf(const OutputImage& output) {
+  std::vector<std::string> names;
+  for (const Layer& layer : output.layers) {
+    if (layer.channels.empty()) names.push_back(layer.name);
+    for (const char letter : layer.channels)
+      names.push_back(layer.name.empty() ? std::string(1, letter) : layer.name + '.' + letter);
+  }
+  return names;
+}
+
+}  // namespace
+
+void writeExr(const std::filesystem::path& path, const OutputImage& output) {
+  const Image& first = output.layers.front().image;
+  ExrRowsWriter writer(path, {.width = first.width,
+                              .height = first.height,
+                              .channels = channelsOf(output),
+                              .metadata = output.metadata,
+                              .placement = output.placement});
+  std::vector<const Image*> images;
+  for (const Layer& layer : output.layers) images.push_back(&layer.image);
+  writer.write(images);
+  writer.commit(output.state);
 }
 
 }  // namespace chromeball

@@ -13,6 +13,7 @@
 #include "base/archive.h"
 #include "image/image.h"
 #include "image/io/read_image.h"
+#include "image/io/write_image.h"
 
 namespace chromeball {
 
@@ -47,5 +48,11 @@ class ExrRowsWriter {
   class Output;
   std::unique_ptr<Output> output_;
 };
+
+// OpenEXR files with layers, attributes, and what this program reads again (exr_state.h).
+
+// Writes float32 scanlines with ZIP compression, and output.state if it is set. Atomic. Throws
+// RunError.
+void writeExr(const std::filesystem::path& path, const OutputImage& output);
 
 }  // namespace chromeball

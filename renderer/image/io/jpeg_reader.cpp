@@ -11,7 +11,7 @@
 // needs jpeglib.h
 #include <jerror.h>
 
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "image/io/sample_reader.h"
 #include "image/size_limits.h"
 

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/number_text.h"
+#include "base/text.h"
 #include "image/size_limits.h"
 
 namespace chromeball {

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "image/size_limits.h"
 
 namespace chromeball {

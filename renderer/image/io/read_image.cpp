@@ -10,8 +10,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "image/chromaticities.h"
 #include "image/image.h"
-#include "image/io/conversion_note.h"
 #include "image/io/exif.h"
 #include "image/io/exr_input.h"
 #include "image/io/image_format.h"

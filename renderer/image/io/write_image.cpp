@@ -13,9 +13,9 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "image/io/encode_png.h"
+#include "image/io/exr_rows_writer.h"
 #include "image/io/pfm.h"
 #include "image/io/radiance_hdr.h"
-#include "image/io/write_exr.h"
 
 namespace chromeball {
 namespace {

@@ -5,7 +5,7 @@
 #include <queue>
 
 #include "base/hash.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "probe/mapping.h"
 
 namespace chromeball {

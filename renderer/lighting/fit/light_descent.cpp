@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "lighting/fit/light_error.h"
 #include "lighting/fit/nonnegative.h"
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "base/work_monitor.h"
+#include "base/progress.h"
 
 namespace chromeball {
 namespace {

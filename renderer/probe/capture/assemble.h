@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "probe/capture/capture_view.h"
+#include "probe/capture/match_views.h"
 #include "probe/mapping.h"
 
 namespace chromeball {

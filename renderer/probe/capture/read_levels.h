@@ -9,6 +9,7 @@
 #include "base/message.h"
 #include "image/image.h"
 #include "image/io/read_image.h"
+#include "probe/capture/exposure.h"
 
 namespace chromeball {
 
@@ -28,5 +29,14 @@ struct PhotographLevels {
 // is no image, or if sizes, kinds of numbers, primaries or stated transfers differ.
 PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
                             bool resizes = false);
+
+// The camera's settings of photographs, from their EXIF blocks or from the user.
+
+// `times` (seconds) and `apertures` (f-numbers), one for each file, replace those of EXIF; either
+// may be empty. If there are times, nothing is read from the files: no ISO either. Otherwise each
+// file must state its time, and all of them or none the aperture and the ISO. Throws InputError.
+std::vector<CameraSettings> cameraSettings(const std::vector<std::string>& files,
+                                           const std::vector<double>& times,
+                                           const std::vector<double>& apertures);
 
 }  // namespace chromeball

@@ -5,8 +5,6 @@
 #include <array>
 #include <limits>
 
-#include "probe/capture/rim_equations.h"
-
 namespace chromeball {
 namespace {
 

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "image/io/conversion_note.h"
+#include "image/chromaticities.h"
 
 namespace chromeball {
 namespace {

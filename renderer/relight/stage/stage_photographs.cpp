@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/number_text.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "image/io/read_image.h"
 #include "math/vec.h"
 

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/work_monitor.h"
+#include "base/progress.h"
 #include "image/io/decode_image.h"
 #include "image/io/texel_file.h"
 #include "scene/mip_chain.h"

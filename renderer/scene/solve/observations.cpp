@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/number_text.h"
+#include "base/text.h"
 
 namespace chromeball {
 namespace {

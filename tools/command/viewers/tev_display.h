@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "session/viewer.h"
+#include "session/live_image.h"
 
 namespace chromeball {
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/checksum.h"
+#include "base/hash.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
-
-#include "base/hash.h"
 
 namespace chromeball {
 

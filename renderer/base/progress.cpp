@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/work_monitor.h"
+#include "base/progress.h"
 
 #include <utility>
 
