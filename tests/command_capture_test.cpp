@@ -167,7 +167,8 @@ TEST_F(SlowCommandCapture, BadSeriesAreRejected) {
   expect(joined(files, {"-o", folder_ / "a.png"}), "cannot hold the range");
   expect(joined(files, {"-o", files[0]}), "cannot hold the range");
   const std::string plain = write("plain.png", radiance_);
-  expect({plain, "-o", out_}, "plain.png: has no exposure time in an EXIF block; give the exposures");
+  expect({plain, "-o", out_},
+         "plain.png: has no exposure time in an EXIF block; give the exposures");
   expect({files[0], write("none.exr", radiance_), "-o", out_}, "none.exr: has no exposure time");
   expect({files[0], photograph("iso.png", radiance_, 1, {exposureTime(1, 3), fNumber(2, 1)}), "-o",
           out_},

@@ -6,13 +6,13 @@
 
 #include "all_tables.h"
 #include "base/parallel.h"
-#include "transport/world.h"
 #include "lighting/strategy.h"
 #include "measure/statistics.h"
 #include "probe/mapping.h"
 #include "probe/sky.h"
 #include "probe/synth.h"
 #include "test_scene.h"
+#include "transport/world.h"
 
 namespace chromeball::render_test {
 namespace {

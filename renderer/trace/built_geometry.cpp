@@ -75,11 +75,13 @@ void BuiltGeometry::attach(RTCSceneTy* scene, RTCGeometryTy* geometry, uint32_t 
 }
 
 void BuiltGeometry::commit(RTCSceneTy* scene) {
+  static constexpr const char* kStage = "acceleration structures";
   const auto goesOn = [](void* monitor, double fraction) {
     auto& owner = *static_cast<WorkMonitor*>(monitor);
-    owner.report("acceleration structures", fraction);
+    owner.report(kStage, fraction);
     return !owner.isCancelled();
   };
+  reportWork(kStage, 0);  // here, since Embree may report from its other threads alone
   if (WorkMonitor* const monitor = currentMonitor())
     rtcSetSceneProgressMonitorFunction(scene, goesOn, monitor);
   rtcCommitScene(scene);
