@@ -164,7 +164,7 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
   underSun[3] = folder_ / "sunny.exr";
   expectError(underSun, "biased");
   writeImage(folder_ / "other.exr", Image(8, 8, 3));
-  expectInputError({"--reference", folder_ / "other.exr"}, "--size 8x8");
+  expectInputError({"--reference", folder_ / "other.exr"}, "a size of 8x8");
   EXPECT_FALSE(fs::exists(dir())) << "created before the input was checked";
 
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);
