@@ -96,25 +96,26 @@ std::vector<Way> ways(const Image& plate) {
   };
 }
 
-// A floor and an emitting panel (the local scene); a rough ball and a body of rough glass. Its
+// A floor and an emitting panel (the local scene); a rough ball and one that half of
+// the light passes. Its
 // shapes have smooth edges alone, so that tiles have nearly normal means.
 std::shared_ptr<const Scene> scene(bool hasObjects) {
   const auto made = std::make_shared<Scene>();
   SceneBuilder builder(*made);
-  for (const char* name : {"floor", "panel", "ball", "glass"}) builder.addNode(name);
+  for (const char* name : {"floor", "panel", "ball", "veil"}) builder.addNode(name);
   Scene shapes;
   addQuad(shapes, addMaterial(shapes, lambert(Rgb(0.5f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
   addQuad(shapes, 0, {-1, 0.2f, -1.5f}, {2, 0, 0}, {0, 1, 0});
   addSphere(shapes, 0, {-0.6f, 0.5f, 0}, 0.5f, 16);
   addSphere(shapes, 0, {0.6f, 0.45f, 0.2f}, 0.4f, 16);
-  Material panel = lambert(Rgb(0.2f)), ball, glass;
+  Material panel = lambert(Rgb(0.2f)), ball, veil;
   panel.emission = Rgb(1, 2, 0.5f);
   ball.baseColor = vec4(0.7f, 0.5f, 0.3f, 1);
   ball.metallic = 0.3f, ball.roughness = 0.6f;
-  glass.metallic = 0, glass.roughness = 0.5f;
-  glass.extended.emplace();
-  glass.extended->transmission = 1, glass.extended->thinWalled = false;
-  const std::vector<Material> materials = {lambert(Rgb(0.5f)), panel, ball, glass};
+  veil = lambert(Rgb(0.3f, 0.5f, 0.6f));
+  veil.baseColor.w = 0.5f;
+  veil.alphaMode = AlphaMode::Blend;
+  const std::vector<Material> materials = {lambert(Rgb(0.5f)), panel, ball, veil};
   for (int i = 0; i < (hasObjects ? 4 : 2); ++i) {
     Mesh mesh = *shapes.meshes.shared(size_t(i));
     const int material = builder.addMaterial(materials[size_t(i)]);
@@ -229,7 +230,7 @@ std::vector<Image> repeats(Render r, int count, uint64_t firstSeed) {
   std::vector<Image> images;
   uint64_t& seed = r.description.settings.seed;
   const bool isWhole = r.shards == 1 && !r.crops && !r.interrupts && !r.inSession && !r.mixesLight;
-  if (isWhole) {  // prepared once, since the tables of glass take longer than these renders
+  if (isWhole) {  // prepared once, which takes longer than these renders
     LoadedScene loaded = loadScene(r.description);
     const PreparedScene prepared = prepareScene(loaded);
     for (int i = 0; i < count; ++i) {
