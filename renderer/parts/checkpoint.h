@@ -13,8 +13,8 @@
 #include "base/progress.h"
 #include "parts/render_part.h"
 #include "render/render_state.h"
-#include "session/live_image.h"
 #include "session/run_job.h"
+#include "session/viewer.h"
 
 namespace chromeball {
 

@@ -28,8 +28,7 @@ constexpr std::array kOfImage = {"camera",       "cameraPosition", "cameraFov", 
                                  "size",         "crop",           "shard",         "orbit",
                                  "seed",         "clamp",          "transparent",   "denoise",
                                  "adaptive",     "ao-distance",    "bent",          "aov",
-                                 "scene-camera", "lens",           "optics",        "scene-camera",
-                                 "lens",         "optics"};
+                                 "scene-camera", "lens",           "optics"};
 constexpr std::array kVariedByComparisons = {"strategy", "adaptive", "guide"};
 
 // For row vectors: each row is the transformed unit vector of an axis, the last row the transformed

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "session/live_image.h"
+#include "session/viewer.h"
 
 namespace chromeball {
 

@@ -8,7 +8,7 @@
 
 #include "base/message.h"
 #include "front/settings.h"
-#include "session/live_image.h"
+#include "session/viewer.h"
 
 namespace chromeball {
 

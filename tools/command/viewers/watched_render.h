@@ -12,7 +12,7 @@
 
 #include "base/json.h"
 #include "base/progress.h"
-#include "session/live_image.h"
+#include "session/viewer.h"
 
 namespace chromeball {
 

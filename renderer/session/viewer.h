@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who watches an image while it is rendered: a page in a browser, another program.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "session/finish.h"
+
+namespace chromeball {
+
+struct ImageSoFar {
+  OutputImage image;     // denoised only at the end
+  uint32_t samples = 0;  // mean per pixel
+  double noise = 0;     // of the colour before denoising (film/noise.h); a fraction, NaN if unknown
+  bool isLast = false;  // of this render
+};
+
+// With the layers variance and samples, also if the job does not write them.
+ImageSoFar imageSoFar(FinishedImage finished, const RenderResult& render);
+
+class Viewer {
+ public:
+  virtual ~Viewer() = default;
+
+  // A render begins; `name` is that of its first output file.
+  virtual void begin(const std::string& name) = 0;
+  // The fraction of the render's work done; NaN if unknown. Thread-safe.
+  virtual void update(double fraction) = 0;
+
+  // Whether a newer image is wanted. Thread-safe and fast: called after each tile.
+  virtual bool wantsImage() const = 0;
+  virtual void show(std::shared_ptr<const ImageSoFar> image) = 0;
+
+  // Whether the output files shall be written now. Thread-safe and fast.
+  virtual bool wantsFiles() const { return false; }
+  virtual void wroteFiles() {}
+};
+
+}  // namespace chromeball
