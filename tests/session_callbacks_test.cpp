@@ -166,13 +166,13 @@ TEST(SessionCallbacks, LiveImageIsThatOfTheWhole) {
     d.settings.lightGroups = hasGroups;
     const LoadedScene loaded = loadScene(d);
     const PreparedScene prepared = prepareScene(loaded);
-    LiveImage image(loaded);
     SelfWatching control;
+    LiveImage image(loaded, *control.live());
     std::vector<std::shared_ptr<const SessionImage>> held;
     std::vector<std::vector<float>> texels;
     const std::atomic<bool> never = false;
     const auto watch = [&](double) {
-      auto soFar = image.update(*control.live(), 0.5);
+      auto soFar = image.update(0.5);
       if (!soFar || held.size() >= 4) return;  // later ones take turns in two buffers
       texels.push_back(soFar->color().texels);
       held.push_back(std::move(soFar));
@@ -180,7 +180,7 @@ TEST(SessionCallbacks, LiveImageIsThatOfTheWhole) {
     const JobResult result = renderJob(loaded, prepared, watch, never, &control);
     ASSERT_EQ(held.size(), 4u);
     for (size_t i = 0; i < held.size(); ++i) EXPECT_EQ(held[i]->color().texels, texels[i]);
-    const auto last = image.update(*control.live(), 0.5);
+    const auto last = image.update(0.5);
     ASSERT_TRUE(last);
     EXPECT_EQ(last->noise, 0.5);
     EXPECT_NEAR(last->samples, 32, 1);

@@ -21,12 +21,18 @@ void useLargePages(void* data, size_t bytes);
 
 inline constexpr size_t kZeroedAtOnce = 8 << 20;  // bytes; some milliseconds
 
+// Makes room for `count` items in an empty array.
+template <class T>
+void reserveLong(std::vector<T>& array, size_t count) {
+  array.reserve(count);
+  useLargePages(array.data(), count * sizeof(T));
+}
+
 // `count` zeros.
 template <class T>
 std::vector<T> longArray(size_t count) {
   std::vector<T> array;
-  array.reserve(count);
-  useLargePages(array.data(), count * sizeof(T));
+  reserveLong(array, count);
   forParts(count, kZeroedAtOnce / sizeof(T), [&](size_t, size_t end) { array.resize(end); });
   return array;
 }

@@ -6,50 +6,48 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
-#include <vector>
 
 #include "film/rows.h"
 #include "render/render.h"
 
 namespace chromeball {
 
-// The threads that render go on while the result is copied: of a tile that one of them works on,
-// what was copied before stays. What nobody asks for costs nothing.
+// The threads that render go on while the result is read: a tile that one of them works on is left
+// out until later. What nobody asks for costs nothing.
 class LiveResult {
  public:
-  // For the thread that watches: the result so far, up to date but for tiles in work, and valid
-  // until the next call; null before the render begins. `changed`: tiles that differ from the last
-  // call's, of TileGrid.
-  const RenderResult* update(std::vector<size_t>& changed);
+  // Reads the pixels of a tile of TileGrid, which nobody changes meanwhile; the totals may change.
+  using Read = std::function<void(const RenderResult& result, size_t tile)>;
+
+  // For the thread that watches: `read` gets each tile that differs from what it got last, but for
+  // those in work; at first, all. What is left when the render ends it gets then, in a thread of
+  // the render. Nothing before the render begins.
+  void update(Read read);
 
   // For the render. `result` must outlive the time until end(); an interrupted render may begin
-  // again. `makeEmpty`: a result of the same size and layers; it is called before end().
-  void begin(const RenderResult& result, std::function<RenderResult()> makeEmpty);
+  // again.
+  void begin(const RenderResult& result);
   void end();
-  // While it exists, nothing is copied: for changes of totals, and of the whole film, which
+  // While it exists, nothing is read: for changes of totals, and of the whole film, which
   // replaced() tells.
   [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(changing_); }
-  void replaced() { isReplaced_ = true; }
+  void replaced();
   // Around the work on a tile.
   void beginTile(size_t tile);
   void endTile(size_t tile);
 
  private:
   struct Tile {
-    std::atomic<bool> isBusy = false;      // being worked on, or being copied
-    std::atomic<bool> hasChanged = false;  // since it was copied
+    std::atomic<bool> isBusy = false;  // being worked on, or being read
+    std::atomic<bool> hasChanged = true;
   };
-  void copy();
+  void readChanged();
 
   std::mutex changing_;
   const RenderResult* source_ = nullptr;
-  std::function<RenderResult()> makeEmpty_;
   TileGrid grid_{0, 0};
   std::unique_ptr<Tile[]> tiles_;
-  bool isReplaced_ = false;      // all that was copied before is of no use
-  std::vector<size_t> changed_;  // since the last update()
-  std::optional<RenderResult> copy_;
+  Read read_;  // empty: nobody watches
 };
 
 }  // namespace chromeball

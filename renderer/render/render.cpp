@@ -234,20 +234,6 @@ RenderResult::RenderResult(const RenderResult& whole, const PixelRect& rect)
 
 RenderResult RenderResult::part(const PixelRect& rect) const { return {*this, rect}; }
 
-void RenderResult::copyTotals(const RenderResult& from) {
-  groups = from.groups;
-  rays = from.rays;
-  depthCut = from.depthCut;
-  invalid = from.invalid;
-  clamped = from.clamped;
-  samples = from.samples;
-  isRepeated = from.isRepeated;
-  adaptive = from.adaptive;
-  guidedRegions = from.guidedRegions;
-  causticFraction = from.causticFraction;
-  interrupted = from.interrupted;
-}
-
 void RenderResult::archive(Archive& a) {
   archiveTotals(a);
   const Bands bands{film.width(), film.height()};
@@ -298,7 +284,7 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
     } catch (const Interrupted&) {  // no pass begins
     }
   }
-  if (live) live->begin(state.result, [&] { return RenderResult(settings, integrator.layers()); });
+  if (live) live->begin(state.result);
   try {
     renderPasses(renderer, state, progress, stop, control);
   } catch (...) {

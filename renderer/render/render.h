@@ -26,9 +26,8 @@ struct RenderResult {
   void add(const RenderResult& part, int x, int y) { addPixels(part, x, y), addTotals(part); }
   void addPixels(const RenderResult& part, int x, int y);  // thread-safe for different pixels
   void addTotals(const RenderResult& part);                // what is not per pixel
-  // Takes the pixels, or all else, of a result of the same settings.
+  // Takes the pixels of a result of the same settings.
   void copyPixels(const RenderResult& from, const PixelRect& rect);
-  void copyTotals(const RenderResult& from);
   // These pixels alone, with the names of the groups.
   RenderResult part(const PixelRect& rect) const;
 

@@ -17,6 +17,8 @@ namespace {
 
 using glm::dvec3;
 
+constexpr vec3 kUp(0, 1, 0);  // of vertices without a normal
+
 template <class T>
 void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
   if (array.empty()) return;
@@ -70,7 +72,7 @@ void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
     const dvec3 n = areaNormal(mesh, t);
     for (int k = 0; k < 3; ++k) around[t[k]] += n;
   }
-  for (uint32_t i : bad) mesh.normals[i] = normalize(around[i]) ? vec3(around[i]) : vec3(0, 1, 0);
+  for (uint32_t i : bad) mesh.normals[i] = normalize(around[i]) ? vec3(around[i]) : kUp;
 }
 
 template <class T, class Change>
@@ -112,36 +114,44 @@ void dropUnusedVertices(Mesh& mesh) {
 }
 
 void makeFlat(Mesh& mesh) {
-  std::vector<uint32_t> source;
-  source.reserve(3 * mesh.triangles.size());
-  for (Triangle& t : mesh.triangles) {
-    const uint32_t first = uint32_t(source.size());
-    source.insert(source.end(), {t.x, t.y, t.z});
-    t = {first, first + 1, first + 2};
-  }
+  const size_t count = mesh.triangles.size();
+  auto source = longArray<uint32_t>(3 * count);
+  forRanges(count, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      Triangle& t = mesh.triangles[i];
+      const Triangle own(3 * i, 3 * i + 1, 3 * i + 2);
+      for (int k = 0; k < 3; ++k) source[own[k]] = t[k];
+      t = own;
+    }
+  });
   gatherVertices(mesh, source);
-  mesh.normals.assign(mesh.positions.size(), vec3(0));
-  repairNormals(mesh);
+  mesh.normals = longArray<vec3>(3 * count);
+  forEach(mesh.triangles, [&](const Triangle& t) {
+    dvec3 n = areaNormal(mesh, t);
+    mesh.normals[t.x] = mesh.normals[t.y] = mesh.normals[t.z] = normalize(n) ? vec3(n) : kUp;
+  });
 }
 
 void repairNormals(Mesh& mesh) { placeNormals(mesh, glm::dmat3(1)); }
 
 void repairTangents(Mesh& mesh) {
-  for (size_t i = 0; i < mesh.tangents.size(); ++i) {
-    const vec4& given = mesh.tangents[i];
-    dvec3 t(given);
-    if (!normalize(t)) t = anyPerpendicular(dvec3(mesh.normals[i]));
-    mesh.tangents[i] = vec4(vec3(t), given.w < 0 ? -1 : 1);
-  }
+  forRanges(mesh.tangents.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const vec4& given = mesh.tangents[i];
+      dvec3 t(given);
+      if (!normalize(t)) t = anyPerpendicular(dvec3(mesh.normals[i]));
+      mesh.tangents[i] = vec4(vec3(t), given.w < 0 ? -1 : 1);
+    }
+  });
 }
 
 void transformMesh(Mesh& mesh, const glm::dmat4& transform) {
   const glm::dmat3 linear(transform);
   const bool isMirrored = mirrors(linear);
   forEach(mesh.positions, [&](vec3& p) { p = vec3(transform * glm::dvec4(dvec3(p), 1)); });
-  for (vec4& t : mesh.tangents) t = vec4(vec3(linear * dvec3(t)), isMirrored ? -t.w : t.w);
-  if (isMirrored)
-    for (Triangle& t : mesh.triangles) std::swap(t.y, t.z);
+  forEach(mesh.tangents,
+          [&](vec4& t) { t = vec4(vec3(linear * dvec3(t)), isMirrored ? -t.w : t.w); });
+  if (isMirrored) forEach(mesh.triangles, [](Triangle& t) { std::swap(t.y, t.z); });
   placeNormals(mesh, normalMatrix(linear));
   repairTangents(mesh);
 }
@@ -241,9 +251,11 @@ void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
     copy[i] = uint32_t(source.size());
     source.push_back(i);
   }
-  for (size_t i = 0; i < mesh.triangles.size(); ++i)
-    if (windings[i] == kCounter)
-      for (int k = 0; k < 3; ++k) mesh.triangles[i][k] = copy[mesh.triangles[i][k]];
+  forRanges(mesh.triangles.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      if (windings[i] == kCounter)
+        for (int k = 0; k < 3; ++k) mesh.triangles[i][k] = copy[mesh.triangles[i][k]];
+  });
   gatherVertices(mesh, source);
 
   mesh.tangents = longArray<vec4>(source.size());

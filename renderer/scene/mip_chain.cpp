@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/memory.h"
 #include "base/progress.h"
 
 namespace chromeball {
@@ -56,7 +57,7 @@ std::vector<Cover> covers(int from, int to) {
 // The common case: one texel for four.
 TexelGrid halvedEvenly(const TexelGrid& grid, bool srgb) {
   TexelGrid half{grid.width / 2, grid.height / 2, {}, {}};
-  half.texels8.resize(size_t(half.width) * size_t(half.height));
+  half.texels8 = longArray<std::array<uint8_t, 4>>(size_t(half.width) * size_t(half.height));
   std::array<float, 256> light;  // a quarter of the linear light of each code
   for (int code = 0; code < 256; ++code) {
     const uint8_t c = uint8_t(code);
@@ -98,7 +99,7 @@ TexelGrid halved(const TexelGrid& grid, bool srgb, bool weightedByAlpha) {
   const std::vector<Cover> rows = covers(grid.height, half.height);
   const size_t count = size_t(half.width) * size_t(half.height);
   const bool is8 = !grid.texels8.empty();
-  is8 ? half.texels8.reserve(count) : half.texelsFloat.reserve(count);
+  is8 ? reserveLong(half.texels8, count) : reserveLong(half.texelsFloat, count);
   for (const Cover& row : rows) {
     endIfCancelled();
     for (const Cover& column : columns) {

@@ -9,39 +9,71 @@
 namespace chromeball {
 namespace {
 
+template <class Number>
+double sumOf(const std::vector<Number>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// Images of the same layers as `part`, all 0.
+OutputImage emptyImage(const OutputImage& part, const TileGrid& grid) {
+  OutputImage image;
+  image.placement = part.placement;
+  for (const Layer& layer : part.layers)
+    image.layers.push_back(
+        {layer.name, layer.channels, Image(grid.width, grid.height, layer.image.channels)});
+  return image;
+}
+
 void paste(const Image& part, const PixelRect& rect, Image& image) {
   for (int y = 0; y < rect.height; ++y)
     std::copy_n(part.at(0, y), rect.width * part.channels, image.at(rect.x, rect.y + y));
 }
 
-double sumOf(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
+void copyPixels(const OutputImage& from, const PixelRect& rect, OutputImage& to) {
+  for (size_t i = 0; i < from.layers.size(); ++i) {
+    const Image& image = from.layers[i].image;
+    rect.copy(image.texels, to.layers[i].image.texels, image.width, size_t(image.channels));
+  }
 }
 
 }  // namespace
 
-std::shared_ptr<const SessionImage> LiveImage::update(LiveResult& live, double noise) {
-  std::vector<size_t> changed;
-  const RenderResult* const result = live.update(changed);
-  if (!result) return nullptr;
-  if (!plan_) {
-    plan_ = finishPlan(loaded_, *result);
-    grid_ = {result->film.width(), result->film.height()};
-    samples_.assign(grid_.count(), 0);
-    for (Buffer& buffer : buffers_) buffer.isStale.assign(grid_.count(), true);
-  }
-  for (const size_t tile : changed) {
-    const Image counts = result->film.part(grid_.rectOf(tile)).sampleCounts();
-    samples_[tile] = std::accumulate(counts.texels.begin(), counts.texels.end(), 0.0);
-    for (Buffer& buffer : buffers_) buffer.isStale[tile] = true;
-  }
+std::shared_ptr<const SessionImage> LiveImage::update(double noise) {
+  live_.update([this](const RenderResult& result, size_t tile) { read(result, tile); });
+  const std::scoped_lock lock(reading_);
   const double samples = sumOf(samples_);
   if (samples == 0) return nullptr;
   Buffer& buffer = freeBuffer();
-  bring(buffer, *result);
+  bring(buffer);
   buffer.image->samples = samples / (double(grid_.width) * grid_.height);
   buffer.image->noise = noise;
   return buffer.image;
+}
+
+void LiveImage::begin(const RenderResult& result) {
+  plan_ = finishPlan(loaded_, result);
+  grid_ = {result.film.width(), result.film.height()};
+  samples_.assign(grid_.count(), 0);
+  for (Buffer& buffer : buffers_) buffer.isStale.assign(grid_.count(), true);
+  if (plan_->composite) composed_.emplace(plan_->settings, plan_->layers());
+}
+
+void LiveImage::read(const RenderResult& result, size_t tile) {
+  const std::scoped_lock lock(reading_);
+  if (!plan_) begin(result);
+  const PixelRect rect = grid_.rectOf(tile);
+  for (Buffer& buffer : buffers_) buffer.isStale[tile] = true;
+  if (composed_) {
+    composed_->copyPixels(result, rect);
+    samples_[tile] = sumOf(result.film.part(rect).sampleCounts().texels);
+    return;
+  }
+  const RenderResult pixels = result.part(rect);
+  samples_[tile] = sumOf(pixels.film.sampleCounts().texels);
+  const OutputImage part = imageOf(*plan_, pixels);
+  if (current_.layers.empty()) current_ = emptyImage(part, grid_);
+  for (size_t i = 0; i < part.layers.size(); ++i)
+    paste(part.layers[i].image, rect, current_.layers[i].image);
 }
 
 // One whose image nobody has; else one that gets a new image.
@@ -58,25 +90,17 @@ LiveImage::Buffer& LiveImage::freeBuffer() {
   return buffers_[0];
 }
 
-void LiveImage::bring(Buffer& buffer, const RenderResult& result) const {
+void LiveImage::bring(Buffer& buffer) const {
   OutputImage& image = buffer.image->image;
-  if (plan_->composite) {
-    image = imageOf(*plan_, result);
+  if (composed_) {
+    image = imageOf(*plan_, *composed_);
     return;
   }
+  if (image.layers.empty()) image = emptyImage(current_, grid_);
   for (size_t tile = 0; tile < grid_.count(); ++tile) {
     if (!buffer.isStale[tile]) continue;
     buffer.isStale[tile] = false;
-    const PixelRect rect = grid_.rectOf(tile);
-    const OutputImage part = imageOf(*plan_, result.part(rect));
-    if (image.layers.empty()) {
-      image.placement = part.placement;
-      for (const Layer& layer : part.layers)
-        image.layers.push_back(
-            {layer.name, layer.channels, Image(grid_.width, grid_.height, layer.image.channels)});
-    }
-    for (size_t i = 0; i < part.layers.size(); ++i)
-      paste(part.layers[i].image, rect, image.layers[i].image);
+    copyPixels(current_, grid_.rectOf(tile), image);
   }
 }
 

@@ -3,10 +3,9 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "render/live_result.h"
@@ -19,12 +18,13 @@ struct LoadedScene;
 
 class LiveImage {
  public:
-  explicit LiveImage(const LoadedScene& loaded) : loaded_(loaded) {}  // which must outlive this
+  // Both must outlive this, and this the render.
+  LiveImage(const LoadedScene& loaded, LiveResult& live) : loaded_(loaded), live_(live) {}
 
   // The image so far; null before the first samples. Of a composite, all pixels are composed again.
   // Otherwise only what has changed costs time, if of the two images that were returned last one is
   // not in use any more.
-  std::shared_ptr<const SessionImage> update(LiveResult& live, double noise);
+  std::shared_ptr<const SessionImage> update(double noise);
 
  private:
   // An image, and the tiles in which it is not up to date.
@@ -32,13 +32,19 @@ class LiveImage {
     std::shared_ptr<SessionImage> image;
     std::vector<bool> isStale;
   };
+  void begin(const RenderResult& result);
+  void read(const RenderResult& result, size_t tile);
   Buffer& freeBuffer();
-  void bring(Buffer& buffer, const RenderResult& result) const;
+  void bring(Buffer& buffer) const;
 
   const LoadedScene& loaded_;
+  LiveResult& live_;
+  std::mutex reading_;  // the render reads what is left at its end
   std::optional<FinishPlan> plan_;
   TileGrid grid_{0, 0};
-  std::vector<double> samples_;  // by tile
+  std::vector<double> samples_;           // by tile
+  OutputImage current_;                   // of all tiles that were read; not of a composite
+  std::optional<RenderResult> composed_;  // what a composite is made of
   std::array<Buffer, 2> buffers_;
 };
 

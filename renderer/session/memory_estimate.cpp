@@ -44,7 +44,7 @@ double bytesOfFiles(const Scene& scene) {
 double imageBytes(const RenderDescription& job) {
   const RenderSettings& s = job.settings;
   const double composite = job.composite ? double(compositeBytesPerPixel(s.denoise)) : 0;
-  const double snapshots = job.run.isWatched ? snapshotBytes(s) : 0;
+  const double snapshots = job.run.isWatched ? snapshotBytes(s, job.composite.has_value()) : 0;
   return imageBytes(s) + snapshots + composite * s.width * s.height;
 }
 
@@ -134,9 +134,9 @@ double imageBytes(const RenderSettings& settings) {
   return pixelsOf(settings) * (pixel.film + std::max(kNoise, 2 * pixel.texels)) + denoising;
 }
 
-double snapshotBytes(const RenderSettings& settings) {
+double snapshotBytes(const RenderSettings& settings, bool isComposite) {
   const PixelMemory pixel = pixelMemory(settings);
-  return pixelsOf(settings) * (pixel.film + 2 * pixel.texels);
+  return pixelsOf(settings) * ((isComposite ? pixel.film : pixel.texels) + 2 * pixel.texels);
 }
 
 }  // namespace chromeball

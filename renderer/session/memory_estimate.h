@@ -41,7 +41,8 @@ inline constexpr double kProcessBytes = 3e7;
 // Peak memory of the film, the layers and the output images, in bytes.
 double imageBytes(const RenderSettings& settings);
 
-// What snapshots of a session take besides: the film again, and two images (live_image.h).
-double snapshotBytes(const RenderSettings& settings);
+// What snapshots of a session take besides (live_image.h): three images; of a composite the film
+// again, and two images.
+double snapshotBytes(const RenderSettings& settings, bool isComposite);
 
 }  // namespace chromeball

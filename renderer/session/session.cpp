@@ -321,8 +321,8 @@ std::shared_ptr<const SessionImage> Session::Implementation::snapshot() {
   if (!isRunning_ && result_) return result_;
   if (!isReady_) return nullptr;
   control_->watch();
-  if (!liveImage_) liveImage_.emplace(*loaded_);
-  return liveImage_->update(*control_->live(), control_->noise());
+  if (!liveImage_) liveImage_.emplace(*loaded_, *control_->live());
+  return liveImage_->update(control_->noise());
 }
 
 Session::Session(RenderDescription description, SessionCallbacks callbacks)

@@ -70,8 +70,7 @@ class Session {
   const SessionImage& wait();
   // What there is, also while it renders: not denoised, without the layer `variance`, and with the
   // noise after the last pass over the image. Null before the first samples, and for a reference of
-  // two passes. Costs little if the snapshot before the last one is not in use any more. The film
-  // is kept twice from the first call on.
+  // two passes. Costs little if the snapshot before the last one is not in use any more.
   std::shared_ptr<const SessionImage> snapshot();
   // Notes and warnings of the files and the description; after wait().
   Messages messages() const;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "image/io/image_format.h"
 #include "image/io/sample_reader.h"
 #include "image/size_limits.h"
@@ -57,7 +58,7 @@ std::vector<Texel> readTexels(SampleReader& reader, typename Texel::value_type u
                               typename Texel::value_type opaque) {
   const auto [width, height, channels, bits] = reader.layout();
   std::vector<Texel> wide(static_cast<size_t>(width)), texels;
-  texels.reserve(wide.size() * size_t(height));
+  reserveLong(texels, wide.size() * size_t(height));
   reader.read([&, channels = channels](int, const void* samples) {
     const T* from = static_cast<const T*>(samples);
     const auto at = [&](int channel) { return typename Texel::value_type(from[channel] * unit); };
