@@ -147,7 +147,8 @@ TEST(Capabilities, EverySettingInVainIsNamed) {
   inVain.probe.file.reset();
   inVain.straightGlassShadows = true;
   inVain.singleSided = SingleSided::Off;
-  const SceneContents nothing, all{true, true, true, true, true, true};
+  inVain.lighting.from = LightFrom::Rest;
+  const SceneContents nothing, all{true, true, true, true, true, true, true};
   for (const Dependence& d : dependences()) {
     const std::string name(d.setting);
     for (D* description : {&open, &inVain}) {

@@ -631,12 +631,14 @@ TEST(CommandRender, NamesSettingsWithoutEffect) {
   };
   const std::string lit = scene.folder() + "/lit.toml";
   std::ofstream(lit) << "model = 'model.gltf'\n[probe]\nscale = 2.5\n[lighting]\nlights = 0.5\n";
-  const std::string error = errorOf(lit, {"--probe-rotation", "30", "--probe-mapping", "lat-long"});
+  const std::string error = errorOf(lit, {"--probe-rotation", "30", "--probe-mapping", "lat-long",
+                                          "--strategy", "uniform", "--mis", "off"});
   for (const char* line :
        {"lit.toml:3: `probe.scale` has no effect without a probe\n",
         "lit.toml:5: `lighting.lights` has no effect without punctual lights of the models\n",
         "--probe-rotation has no effect without a probe\n",
-        "--probe-mapping has no effect without a probe's file\n"})
+        "--probe-mapping has no effect without a probe's file\n",
+        "--strategy has no effect without a probe\n", "--mis has no effect without a probe\n"})
     EXPECT_NE(error.find(line), std::string::npos) << line << error;
   const auto expectOne = [&](const Words& options, const std::string& needs) {
     Words all{"--probe", scene.gradient};
@@ -653,6 +655,7 @@ TEST(CommandRender, NamesSettingsWithoutEffect) {
   expectOne({"--light-units", "radiometric"}, "punctual lights of the models");
   expectOne({"--glass-shadows", "straight"}, "smooth bodies of glass");
   expectOne({"--max-transmission-depth", "3"}, "bodies of glass");
+  expectOne({"--light-from", "rest"}, "suns");
   expectOne({"--probe-rotation", "30", "--probe-scale", "2", "--probe-mapping", "lat-long"}, "");
   expectOne({"--single-sided", "light"}, "");
 }

@@ -343,6 +343,24 @@ TEST(Sequence, FramesAreCheckedLikeStills) {
   EXPECT_NE(result.error.find("GB of memory"), std::string::npos) << result.error;
 }
 
+// A model's own time is for stills.
+TEST(Sequence, NamesATimeInVain) {
+  const Moving model;
+  const std::string path = (model.w.folder() / "timed.toml").string();
+  std::ofstream(path)
+      << "[[model]]\nfile = 'model.gltf'\n[[model]]\nfile = 'model.gltf'\ntime = 2\n";
+  const SceneFile scene = readSceneFile(path);
+  Settings given;
+  EXPECT_TRUE(Sequence(scene, given).messages().empty());
+  given.set("frames", std::string("1:2"), "--frames");
+  given.set("output.file", std::vector<std::string>{"#.exr"}, "-o");
+  const Messages messages = Sequence(scene, given).messages();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_TRUE(messages[0].text.ends_with(
+      "timed.toml:5: `time` has no effect: frames have times of their own"))
+      << messages[0].text;
+}
+
 TEST(Sequence, NamesFiles) {
   EXPECT_EQ(withNumber("a.####.exr", 7), "a.0007.exr");
   EXPECT_EQ(withNumber("a.#.exr", 12345), "a.12345.exr");

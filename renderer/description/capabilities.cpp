@@ -223,6 +223,12 @@ constexpr std::array kDependences = {
                [](const D& d, const SceneContents&) { return d.probe.file.has_value(); }},
     Dependence{"probe.rotation", "a probe", hasProbe},
     Dependence{"probe.scale", "a probe", hasProbe},
+    Dependence{"lighting.strategy", "a probe", hasProbe},
+    Dependence{"lighting.mis", "a probe", hasProbe},
+    Dependence{"lighting.from", "suns",
+               [](const D& d, const SceneContents& c) {
+                 return d.lighting.from == LightFrom::All || c.hasSuns;
+               }},
     Dependence{"lighting.lights", "punctual lights of the models", hasModelLights},
     Dependence{"lighting.light_units", "punctual lights of the models", hasModelLights},
     Dependence{"render.glass_shadows", "smooth bodies of glass",

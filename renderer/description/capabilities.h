@@ -38,6 +38,7 @@ void checkCapabilities(const RenderDescription& description);
 struct SceneContents {
   bool hasProbe = false;        // also from memory, or the models' own environment
   bool hasModelLights = false;  // punctual lights of the models
+  bool hasSuns = false;         // extracted from the probe, or of the description
   bool hasBodies = false, hasStraightGlass = false;  // of glass; with straight shadows
   bool hidesBacks = false;                           // of single-sided surfaces, unless told not to
   bool moves = false;                                // while the shutter is open

@@ -56,7 +56,10 @@ ModelEntry readModel(const Entry& entry, const std::string& name, Origins& origi
     AnimationTime& when = result.choice.animation.emplace();
     origins.set(name + ".choice.animation", (animation ? animation : time).location());
     if (animation) when.name = animation.text();
-    if (time) when.seconds = time.number();
+    if (time) {
+      when.seconds = time.number();
+      origins.set(name + ".choice.animation.seconds", time.location());
+    }
   }
   if (const Entry e = model["variant"]) {
     result.choice.variant = {.name = e.text()};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <regex>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 
 namespace chromeball {
@@ -121,6 +123,17 @@ SequenceFrame Sequence::frame(int number) const {
   if (all.get<bool>("seed-per-frame"))
     s.set("render.seed", all.get<uint64_t>("render.seed") + uint64_t(number), "--seed-per-frame");
   return frame;
+}
+
+Messages Sequence::messages() const {
+  Messages messages;
+  for (size_t i = 0; !numbers_.empty() && i < scene_.models.size(); ++i)
+    if (const std::string time = elementName("models", i) + ".choice.animation.seconds";
+        scene_.origins.has(time))
+      messages.push_back({Message::Kind::Warning,
+                          fmt::format("{}: `time` has no effect: frames have times of their own",
+                                      scene_.origins.of(time))});
+  return messages;
 }
 
 }  // namespace chromeball

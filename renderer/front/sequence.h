@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "base/message.h"
 #include "front/scene_file.h"
 
 namespace chromeball {
@@ -25,6 +26,7 @@ class Sequence {
 
   const std::vector<int>& numbers() const { return numbers_; }  // empty: a still
   SequenceFrame frame(int number) const;                        // throws InputError
+  Messages messages() const;  // what of the scene file has no effect on frames
 
  private:
   const SceneFile& scene_;

@@ -26,6 +26,7 @@ struct LoadedProbe {
   bool hasIntegerTexels = false;  // of 8 or 16 bits
   float maximum = 0;              // over texels and channels
   double fractionAtMaximum = 0;   // of the texels; 0 if all are equal
+  bool hasSuns = false;           // only known if they, or the rest, are the light
   Messages messages;              // of its reader, each "FILE: ..."
 };
 

@@ -47,12 +47,15 @@ SceneContents contentsOf(const LoadedScene& loaded) {
       return isSuch(scene.materials[size_t(i.material)]);
     });
   };
-  return {.hasProbe = job.probe.file || job.probe.map || scene.environment,
-          .hasModelLights = loaded.hasModelLights,
-          .hasBodies = hasBodies(scene),
-          .hasStraightGlass = hasMaterial([](const Material& m) { return m.straightShadows; }),
-          .hidesBacks = hasMaterial([](const Material& m) { return !m.doubleSided; }),
-          .moves = scene.moves || loaded.camera.motion};
+  return {
+      .hasProbe = job.probe.file || job.probe.map || scene.environment,
+      .hasModelLights = loaded.hasModelLights,
+      .hasSuns = loaded.loadedProbe.hasSuns || (job.scene && !job.scene->suns.empty()) ||
+                 std::ranges::any_of(job.lamps, [](const Lamp& l) { return l.sun.has_value(); }),
+      .hasBodies = hasBodies(scene),
+      .hasStraightGlass = hasMaterial([](const Material& m) { return m.straightShadows; }),
+      .hidesBacks = hasMaterial([](const Material& m) { return !m.doubleSided; }),
+      .moves = scene.moves || loaded.camera.motion};
 }
 
 void addMemory(const LoadedScene& loaded, Collector& messages) {

@@ -16,15 +16,17 @@ namespace chromeball {
 namespace {
 
 // Throws InputError if the part is to be the suns, and there are none.
-void keepPart(const RenderDescription& job, const Scene& scene, Image& latLong) {
+void keepPart(const RenderDescription& job, const Scene& scene, LoadedProbe& loaded) {
   const LightFrom from = job.lighting.from;
   if (from == LightFrom::All) return;
+  Image& latLong = loaded.latLong;
   SunExtraction extraction = extractSuns(latLong);
+  loaded.hasSuns = !extraction.suns.empty();
   if (from == LightFrom::Rest) {
     latLong = std::move(extraction.remainder);
     return;
   }
-  if (extraction.suns.empty() && scene.suns.empty())
+  if (!loaded.hasSuns && scene.suns.empty())
     throwInput("{}: there are no suns, neither in the probe nor in the scene file",
                job.origins.of("lighting.from"));
   for (size_t i = 0; i < latLong.texels.size(); ++i)
@@ -111,7 +113,7 @@ void checkLit(const RenderDescription& job, const Scene& scene) {
 LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene) {
   reportWork("probe", 0);
   LoadedProbe loaded = loadWholeProbe(job, scene);
-  keepPart(job, scene, loaded.latLong);
+  keepPart(job, scene, loaded);
   return loaded;
 }
 

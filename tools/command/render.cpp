@@ -189,6 +189,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     JobResult result = [&] {
       ImageRender render(scene.loaded(), options.showsProgress(), viewers.all());
       printNew(viewers.messages(), printed, options.quiet());
+      printNew(sequence.messages(), printed, options.quiet());
       printNew(outputMessages, printed, options.quiet());
       printNew(scene.loaded().messages, printed, options.quiet());
       return render.run(
