@@ -631,14 +631,14 @@ TEST(CommandRender, NamesSettingsWithoutEffect) {
   };
   const std::string lit = scene.folder() + "/lit.toml";
   std::ofstream(lit) << "model = 'model.gltf'\n[probe]\nscale = 2.5\n[lighting]\nlights = 0.5\n";
-  const std::string error = errorOf(lit, {"--probe-rotation", "30", "--probe-mapping", "lat-long",
-                                          "--strategy", "uniform", "--mis", "off"});
+  const std::string error = errorOf(
+      lit, {"--probe-rotation", "30", "--probe-mapping", "lat-long", "--strategy", "uniform"});
   for (const char* line :
        {"lit.toml:3: `probe.scale` has no effect without a probe\n",
         "lit.toml:5: `lighting.lights` has no effect without punctual lights of the models\n",
         "--probe-rotation has no effect without a probe\n",
         "--probe-mapping has no effect without a probe's file\n",
-        "--strategy has no effect without a probe\n", "--mis has no effect without a probe\n"})
+        "--strategy has no effect without a probe\n"})
     EXPECT_NE(error.find(line), std::string::npos) << line << error;
   const auto expectOne = [&](const Words& options, const std::string& needs) {
     Words all{"--probe", scene.gradient};

@@ -224,7 +224,6 @@ constexpr std::array kDependences = {
     Dependence{"probe.rotation", "a probe", hasProbe},
     Dependence{"probe.scale", "a probe", hasProbe},
     Dependence{"lighting.strategy", "a probe", hasProbe},
-    Dependence{"lighting.mis", "a probe", hasProbe},
     Dependence{"lighting.from", "suns",
                [](const D& d, const SceneContents& c) {
                  return d.lighting.from == LightFrom::All || c.hasSuns;
