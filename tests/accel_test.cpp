@@ -10,7 +10,7 @@
 
 #include "math/vec.h"
 #include "measure/statistics.h"
-#include "scene/mesh_attributes.h"
+#include "scene/mesh.h"
 #include "scene/surface.h"
 #include "test_scene.h"
 

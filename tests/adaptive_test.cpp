@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "film/allocation.h"
+#include "film/noise.h"
 #include "measure/statistics.h"
-#include "probe/sky.h"
+#include "probe/synth.h"
 #include "render/render.h"
 #include "small_scenes.h"
 

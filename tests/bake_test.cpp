@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "bake/lightmap.h"
-#include "bake/texel_filter.h"
 #include "bake/vertex_light.h"
 #include "bake_scenes.h"
 #include "base/parallel.h"

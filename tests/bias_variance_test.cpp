@@ -7,7 +7,6 @@
 
 #include <random>
 
-#include "measure/power_law.h"
 #include "measure/statistics.h"
 
 namespace chromeball::bias_variance_test {

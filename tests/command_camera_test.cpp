@@ -13,7 +13,7 @@
 #include "photographs_of_points.h"
 #include "probe/synth.h"
 #include "run_command.h"
-#include "scene/solve/picture_lines.h"
+#include "scene/solve/observations.h"
 #include "shared_data.h"
 
 namespace chromeball::command_camera_test {

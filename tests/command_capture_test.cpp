@@ -13,7 +13,6 @@
 #include "lighting/export/light_list.h"
 #include "probe/edit.h"
 #include "probe/irradiance.h"
-#include "probe/sky.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -8,7 +8,6 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "json_file.h"
-#include "probe/sky.h"
 #include "probe/synth.h"
 #include "run_command.h"
 

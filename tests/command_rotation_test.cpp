@@ -12,7 +12,6 @@
 #include "json_file.h"
 #include "probe/irradiance.h"
 #include "probe/probe.h"
-#include "probe/sky.h"
 #include "probe/synth.h"
 #include "run_command.h"
 

@@ -6,8 +6,8 @@
 
 #include <limits>
 
+#include "probe/edit.h"
 #include "probe/load.h"
-#include "probe/repair.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 #include "shared_data.h"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "base/hash.h"
-#include "scene/camera_view.h"
 #include "test_scene.h"
 
 namespace chromeball::distortion_test {

@@ -8,10 +8,10 @@
 #include "base/error.h"
 #include "envelope.h"
 #include "math/cdf.h"
+#include "probe/edit.h"
 #include "probe/info.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
-#include "probe/repair.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 

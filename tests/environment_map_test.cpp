@@ -6,7 +6,6 @@
 #include "approximate/environment_map.h"
 #include "base/parallel.h"
 #include "math/vec.h"
-#include "probe/sky.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"
 #include "study/study.h"

@@ -6,8 +6,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "image/io/exr_rows_reader.h"
-#include "image/io/exr_rows_writer.h"
+#include "image/io/exr_rows.h"
 #include "image/io/write_image.h"
 #include "run_command.h"
 

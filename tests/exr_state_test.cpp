@@ -9,7 +9,7 @@
 #include "base/byte_planes.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "image/io/exr_rows_writer.h"
+#include "image/io/exr_rows.h"
 #include "image/io/exr_state.h"
 #include "image/io/read_image.h"
 #include "run_command.h"

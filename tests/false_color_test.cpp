@@ -7,8 +7,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "image/io/encode_png.h"
 #include "image/io/read_image.h"
+#include "image/io/write_image.h"
 #include "run_command.h"
 
 namespace chromeball::false_color_test {

@@ -15,7 +15,7 @@
 #include "demo/gallery.h"
 #include "demo/nave.h"
 #include "json_file.h"
-#include "probe/sky.h"
+#include "probe/synth.h"
 #include "run_command.h"
 #include "scene/gltf/load_gltf.h"
 #include "trace/accel.h"

@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "relight/transfer/clustered_pca.h"
-#include "relight/transfer/glossy_transfer.h"
+#include "relight/transfer/glossy_model.h"
 #include "small_scenes.h"
 
 namespace chromeball::glossy_transfer_test {

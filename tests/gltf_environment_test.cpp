@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
-#include "image/io/encode_png.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "probe/probe.h"

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "scene/bounds.h"
 #include "scene/gltf/load_gltf.h"
-#include "scene/mesh_attributes.h"
+#include "scene/mesh.h"
 #include "shared_data.h"
 
 namespace chromeball::gltf_samples_test {

@@ -11,7 +11,6 @@
 #include "lighting/scene_sources.h"
 #include "lighting/suns.h"
 #include "measure/statistics.h"
-#include "probe/sky.h"
 #include "probe/synth.h"
 #include "small_scenes.h"
 

@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "exif_block.h"
 #include "image/image.h"
-#include "image/io/encode_png.h"
 #include "image/io/exif.h"
 #include "image/io/radiance_hdr.h"
 #include "image/io/read_image.h"

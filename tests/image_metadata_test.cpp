@@ -10,7 +10,6 @@
 #include "gltf_writer.h"
 #include "image/io/decode_image.h"
 #include "image/io/read_image.h"
-#include "image/io/sample_reader.h"
 #include "instrumented.h"
 #include "run_command.h"
 #include "shared_data.h"

@@ -10,13 +10,11 @@
 
 #include "base/parallel.h"
 #include "lighting/fit/light_descent.h"
-#include "lighting/fit/light_error.h"
 #include "lighting/fit/nonnegative.h"
 #include "lighting/fit/radiance_points.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
-#include "probe/sky.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 #include "shared_data.h"

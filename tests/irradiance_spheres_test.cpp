@@ -10,7 +10,7 @@
 #include "constellation_maps.h"
 #include "image/tonemap.h"
 #include "lighting/fit/irradiance_fit.h"
-#include "lighting/fit/light_error.h"
+#include "lighting/fit/light_descent.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"

@@ -11,8 +11,6 @@
 #include "image/io/read_image.h"
 #include "math/icosphere.h"
 #include "probe/load.h"
-#include "probe/sky.h"
-#include "probe/spherical_harmonics.h"
 #include "probe/synth.h"
 #include "shared_data.h"
 

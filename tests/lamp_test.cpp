@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The [[light]] tables of a scene file.
-#include "scene/builder/add_lamp.h"
+#include "scene/builder/scene_builder.h"
 
 #include <gtest/gtest.h>
 

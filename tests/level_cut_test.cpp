@@ -9,7 +9,7 @@
 
 #include "constellation_maps.h"
 #include "lighting/export/light_preview.h"
-#include "lighting/fit/light_error.h"
+#include "lighting/fit/light_descent.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "lighting/fit/light_error.h"
+#include "lighting/fit/light_descent.h"
 #include "math/icosphere.h"
 #include "run_command.h"
 #include "scene/gltf/load_gltf.h"

@@ -15,7 +15,6 @@
 #include "measure/statistics.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
-#include "probe/sky.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "session/run_job.h"

@@ -10,7 +10,6 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "lighting/export/light_file.h"
-#include "probe/sky.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "small_scenes.h"

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "math/vec.h"
 #include "measure/statistics.h"
-#include "probe/spherical_harmonics.h"
+#include "probe/irradiance.h"
 #include "probe/synth.h"
 #include "relight/stage/direction_basis.h"
 #include "relight/stage/light_stage.h"

@@ -10,7 +10,6 @@
 #include <fstream>
 
 #include "gltf_writer.h"
-#include "image/io/encode_png.h"
 #include "image/io/write_image.h"
 #include "instrumented.h"
 #include "json_file.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/mesh_attributes.h"
+#include "scene/mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texture filtering: mip levels are means; renders have neither aliasing nor blur.
-#include "scene/mip_chain.h"
+#include "scene/texture.h"
 
 #include <gtest/gtest.h>
 
 #include "base/hash.h"
 #include "gltf_writer.h"
-#include "image/io/encode_png.h"
+#include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "test_scene.h"
 

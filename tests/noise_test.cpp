@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "probe/load.h"
-#include "probe/sky.h"
 #include "probe/synth.h"
 #include "shared_data.h"
 #include "small_scenes.h"

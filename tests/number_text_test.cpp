@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "front/arguments.h"
-#include "relight/stage/stage_photographs.h"
+#include "relight/stage/light_stage.h"
 #include "scene/solve/observations.h"
 #include "temporary_folder.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines over pictures, and the edges of models that they show.
-#include "scene/solve/picture_lines.h"
+#include "scene/solve/observations.h"
 
 #include <gtest/gtest.h>
 
-#include "scene/camera_view.h"
+#include "scene/camera.h"
 #include "test_scene.h"
 
 namespace chromeball::picture_lines_test {

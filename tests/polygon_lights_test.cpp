@@ -17,7 +17,7 @@
 #include "math/rotation.h"
 #include "measure/statistics.h"
 #include "probe/irradiance.h"
-#include "probe/suggest_polygons.h"
+#include "probe/polygon_source.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "session/run_job.h"

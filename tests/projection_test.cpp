@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Projection of an image from a camera: lookups return the pixel that sees a point, if any.
-#include "scene/camera_view.h"
+#include "scene/camera.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Path-space regularisation: it conserves energy, leaves what the camera sees directly as it is,
 // reduces variance, and its bias falls with the samples.
-#include "transport/regularization.h"
+#include "transport/path_settings.h"
 
 #include <gtest/gtest.h>
 

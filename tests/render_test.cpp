@@ -9,7 +9,6 @@
 #include "lighting/strategy.h"
 #include "measure/statistics.h"
 #include "probe/mapping.h"
-#include "probe/sky.h"
 #include "probe/synth.h"
 #include "test_scene.h"
 #include "transport/world.h"

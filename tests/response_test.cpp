@@ -10,8 +10,8 @@
 #include "base/error.h"
 #include "bracket.h"
 #include "image/tonemap.h"
+#include "probe/capture/exposure.h"
 #include "probe/capture/merge_photographs.h"
-#include "probe/capture/solve_response.h"
 #include "run_command.h"
 
 namespace chromeball::response_test {

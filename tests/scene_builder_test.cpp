@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "gltf_writer.h"
-#include "image/io/encode_png.h"
+#include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "test_scene.h"
 

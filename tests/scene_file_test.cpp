@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "paths.h"
-#include "scene/builder/add_lamp.h"
+#include "scene/builder/scene_builder.h"
 
 namespace chromeball::scene_file_test {
 namespace {

@@ -11,7 +11,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "measure/statistics.h"
-#include "probe/sky.h"
+#include "probe/synth.h"
 #include "run_command.h"
 #include "session/run_job.h"
 #include "small_model.h"

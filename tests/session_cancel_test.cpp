@@ -9,7 +9,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "gltf_writer.h"
-#include "image/io/encode_png.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "gltf_writer.h"
-#include "image/io/encode_png.h"
 #include "image/io/write_image.h"
 #include "instrumented.h"
 #include "probe/synth.h"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Synthetic probes: skies and suns, overcast, gradient, studio.
-#include "probe/sky.h"
+#include "probe/synth.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "probe/solid_angle.h"
-#include "probe/synth.h"
 
 namespace chromeball::sky_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras found from lines along the axes of the scene, and those of fSpy.
-#include "scene/solve/solve_lines.h"
+#include "scene/solve/solve_camera.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "photographs_of_points.h"
 #include "run_command.h"
-#include "scene/solve/fspy.h"
+#include "scene/solve/solved_camera.h"
 
 namespace chromeball::solve_lines_test {
 namespace {

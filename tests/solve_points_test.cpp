@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras found from points of known positions.
-#include "scene/solve/solve_points.h"
+#include "scene/solve/solve_camera.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

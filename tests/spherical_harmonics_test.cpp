@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "probe/spherical_harmonics.h"
 #include "base/json.h"
 #include "json_file.h"
+#include "probe/irradiance.h"
 
 #include <gtest/gtest.h>
 

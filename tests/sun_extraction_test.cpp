@@ -5,7 +5,6 @@
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
-#include "probe/sky.h"
 #include "probe/solid_angle.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"

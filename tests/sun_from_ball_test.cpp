@@ -8,7 +8,6 @@
 #include "probe/edit.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
-#include "probe/sky.h"
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -4,7 +4,6 @@
 
 #include "lighting/suns.h"
 #include "probe/irradiance.h"
-#include "probe/sky.h"
 #include "probe/synth.h"
 #include "sphere_test.h"
 #include "strategy_samples.h"

@@ -6,9 +6,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "probe/irradiance.h"
-#include "probe/spherical_harmonics.h"
 #include "probe/synth.h"
-#include "relight/transfer/vertex_transfer.h"
+#include "relight/transfer/transfer_model.h"
 #include "small_scenes.h"
 
 namespace chromeball::transfer_test {

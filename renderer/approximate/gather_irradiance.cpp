@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "film/invalid.h"
+#include "film/film.h"
 #include "math/vec.h"
 #include "trace/accel.h"
 

@@ -4,7 +4,7 @@
 
 #include "bake/bake_points.h"
 #include "base/progress.h"
-#include "film/invalid.h"
+#include "film/film.h"
 #include "transport/path.h"
 
 namespace chromeball {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "image/io/encode_png.h"
+#include "image/io/write_image.h"
 #include "image/tonemap.h"
 
 namespace chromeball {

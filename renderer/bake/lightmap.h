@@ -2,6 +2,7 @@
 // The pages of an atlas, and the model that shows them.
 #pragma once
 
+#include "bake/atlas.h"
 #include "bake/bake.h"
 #include "bake/placed_mesh.h"
 #include "image/image.h"
@@ -22,5 +23,22 @@ Lightmap makeLightmap(const PointLight& what, const std::vector<BakePoint>& poin
 std::vector<BakedGeometry> lightmappedGeometry(const std::vector<PlacedMesh>& meshes,
                                                const std::vector<Chart>& charts,
                                                const Atlas& atlas);
+
+// Removes noise from the texels of charts.
+
+// The light of each point, filtered by nonlocal means (Rousselle et al. 2012): each half of the
+// samples is averaged over the texels of the same chart whose surroundings are alike in the other
+// half, up to the noise of both. Constant light stays the same to the last bit. Buried points take
+// no part. `points`: of texels of a page of this size.
+std::vector<Rgb> filteredLight(const std::vector<BakePoint>& points, const BakeResult& baked,
+                               int size);
+
+// Fills the texels of a page that have no light of their own.
+
+// Within the place of each chart: ring by ring the mean of the neighbours that are filled, so that
+// filtering across the edge of a chart, and around points inside of bodies, sees the chart's own
+// light. A place without any light is black; the rest of the page has the mean of its light.
+// `isBaked`: by texel.
+void fillPage(Image& page, std::vector<uint8_t> isBaked, const Atlas& atlas);
 
 }  // namespace chromeball

@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/error.h"
+
 namespace chromeball {
 
 class Archive {
@@ -103,7 +105,9 @@ class Archive {
   }
 
  protected:
-  [[noreturn]] void throwDamaged() const;
+  [[noreturn]] void throwDamaged() const {
+    throwInput("{}: damaged: its parts do not fit together", name());
+  }
   virtual void bytes(void* data, size_t count) = 0;
   // `count` items of `size` bytes each.
   virtual void itemBytes(void* data, size_t count, size_t size) { bytes(data, count * size); }

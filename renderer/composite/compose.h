@@ -3,7 +3,6 @@
 #pragma once
 
 #include "composite/layers.h"
-#include "composite/modes.h"
 #include "composite/render_composite.h"
 #include "denoise/denoise.h"
 #include "film/noise.h"

@@ -80,4 +80,13 @@ const CompositeLayerInfo* findCompositeLayer(std::string_view name);
 // The image of a layer; not for Reflectance, which is in Projection::colors().
 Image compositeLayer(const DifferentialFilm& film, CompositeLayer layer);
 
+// How a composite is made.
+
+enum class CompositeMode { Difference, Ratio, ShadowCatcher };  // compose.h
+
+enum class Passes {
+  One,  // both worlds along shared paths (differential.h)
+  Two,  // two independent renders, subtracted: slow, as a reference
+};
+
 }  // namespace chromeball

@@ -6,11 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "base/named_setting.h"
+#include "base/text.h"
 #include "composite/differential.h"
 #include "scene/bounds.h"
 #include "scene/camera.h"
-#include "scene/camera_view.h"
 #include "scene/scene.h"
 
 namespace chromeball {

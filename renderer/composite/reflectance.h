@@ -4,7 +4,7 @@
 
 #include "composite/differential.h"
 #include "render/render.h"
-#include "scene/camera_view.h"
+#include "scene/camera.h"
 
 namespace chromeball {
 

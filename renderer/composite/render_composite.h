@@ -3,7 +3,7 @@
 #pragma once
 
 #include "composite/differential.h"
-#include "composite/modes.h"
+#include "composite/layers.h"
 #include "render/render.h"
 
 namespace chromeball {

@@ -3,9 +3,52 @@
 // al. 2016, "Nonlinearly weighted first-order regression for denoising Monte Carlo renderings").
 #pragma once
 
-#include "denoise/nl_means.h"
+#include <array>
+#include <vector>
+
+#include "denoise/planes.h"
 
 namespace chromeball {
+
+// Similarity of pixels by the patches around them (non-local means; Buades, Coll, Morel 2005), with
+// the noise of each pixel taken into account (Rousselle, Knaus, Zwicker 2012, section 3).
+
+// Channels, and the variances of their errors.
+struct NoisyPlanes {
+  std::vector<Plane> values, variances;
+};
+
+// For each pixel p of a tile: the weights of the pixels of the window around p.
+class TileWeights {
+ public:
+  static constexpr int kWidth = 32, kHeight = 32;
+  static constexpr int kReach = 7;  // of windows: 15 x 15 pixels
+  static constexpr int kPatch = 3;  // of patches: 7 x 7 pixels
+  static constexpr int kOffsets = (2 * kReach + 1) * (2 * kReach + 1);
+
+  using Tile = std::array<float, size_t(kWidth) * kHeight>;
+
+  TileWeights() : weights_(kOffsets) {}
+
+  // exp(-max(d, 0)), where d is the mean over patch and channels of
+  //   ((a - b)^2 - (var a + var b)) / (var a + var b);
+  // 0 for p or its neighbour outside the image. (left, top) is the tile's first pixel.
+  void compute(const NoisyPlanes& guide, int left, int top);
+
+  // Those of neighbour (dx, dy), for all p; neighbours are ordered by rows.
+  const Tile& operator[](size_t neighbour) const { return weights_[neighbour]; }
+
+ private:
+  std::vector<Tile> weights_;
+};
+
+// Calls visit(neighbour, dx, dy) for the window of a pixel, in the order of TileWeights.
+template <class Visit>
+void forNeighbours(const Visit& visit) {
+  size_t neighbour = 0;
+  for (int dy = -TileWeights::kReach; dy <= TileWeights::kReach; ++dy)
+    for (int dx = -TileWeights::kReach; dx <= TileWeights::kReach; ++dx) visit(neighbour++, dx, dy);
+}
 
 constexpr int kFeatures = 7;  // albedo, normal, disparity
 

@@ -2,11 +2,14 @@
 // A description as text: for the headers of images and the identity of stored renders.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
 #include "description/render_description.h"
+#include "scene/scene.h"
 
 namespace chromeball {
 
@@ -18,5 +21,11 @@ nlohmann::ordered_json describe(const RenderDescription& description);
 
 // The names of the layers, of plain renders and composites.
 std::vector<std::string> layerNames(const RenderDescription& description);
+
+// Tells a scene in memory from others.
+
+// Of everything that rays and cameras see: geometry, materials, texels, lights, cameras. In one
+// pass over the arrays.
+uint64_t hashOf(const Scene& scene);
 
 }  // namespace chromeball

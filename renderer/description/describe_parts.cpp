@@ -9,7 +9,7 @@
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/json_text.h"
-#include "description/scene_hash.h"
+#include "description/describe.h"
 
 namespace chromeball {
 namespace {

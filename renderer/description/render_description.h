@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/message.h"
-#include "composite/modes.h"
+#include "composite/layers.h"
 #include "description/origins.h"
 #include "description/scene_entries.h"
 #include "image/develop/develop.h"

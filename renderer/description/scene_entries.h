@@ -29,7 +29,12 @@ struct CameraEntry {
   Camera lens = {};  // all but the place
 
   // Throws InputError if position and target coincide or if up is parallel to the view.
-  Camera relativeTo(const glm::dvec3& origin) const;
+  Camera relativeTo(const glm::dvec3& origin) const {
+    Camera camera = Camera::lookAt(vec3(position - origin), vec3(target - origin), up, lens.fov);
+    camera.orthographic = lens.orthographic;
+    camera.halfHeight = lens.halfHeight;
+    return camera;
+  }
 };
 
 // [surroundings], likewise.
@@ -37,7 +42,13 @@ struct SurroundingsEntry {
   Surroundings shape;  // all but the places
   glm::dvec3 min{0}, max{0}, center{0}, capture{0};
 
-  Surroundings relativeTo(const glm::dvec3& origin) const;
+  Surroundings relativeTo(const glm::dvec3& origin) const {
+    Surroundings s = shape;
+    s.min = vec3(min - origin), s.max = vec3(max - origin);
+    s.center = vec3(center - origin);
+    s.capture = vec3(capture - origin);
+    return s;
+  }
 };
 
 // A thin lens; applies to any perspective camera.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "description/scene_hash.h"
+#include "description/describe.h"
 
 #include <span>
 #include <string_view>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "film/invalid.h"
+#include "film/film.h"
 #include "film/rows.h"
 #include "image/image.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/named_setting.h"
+#include "base/text.h"
 #include "math/rotation.h"
 #include "probe/mapping.h"
 #include "scene/gltf/load_gltf.h"

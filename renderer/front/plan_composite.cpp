@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "front/plan_composite.h"
+#include "front/plan_render.h"
 
 #include <algorithm>
 

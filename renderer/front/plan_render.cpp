@@ -10,8 +10,6 @@
 #include "description/capabilities.h"
 #include "front/arguments.h"
 #include "front/develop_text.h"
-#include "front/plan_composite.h"
-#include "front/setting_table.h"
 #include "front/settings.h"
 
 namespace chromeball {

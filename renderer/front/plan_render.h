@@ -4,6 +4,7 @@
 
 #include "description/render_description.h"
 #include "front/scene_file.h"
+#include "front/settings.h"
 
 namespace chromeball {
 
@@ -11,5 +12,10 @@ namespace chromeball {
 // composite. Throws InputError for settings that contradict each other, and for an unreadable
 // plate.
 RenderDescription planJob(SceneFile scene, const Settings& over = {});
+
+// The composite of a description, from its settings.
+
+// Reads the plate, whose size the image takes unless it has another. Throws InputError.
+void planComposite(const Settings& settings, CompositeEntry entry, RenderDescription& description);
 
 }  // namespace chromeball

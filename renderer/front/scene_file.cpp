@@ -8,8 +8,7 @@
 #include "base/file.h"
 #include "front/arguments.h"
 #include "front/scene_file_camera.h"
-#include "front/scene_file_composite.h"
-#include "front/scene_file_light.h"
+#include "front/scene_file_sections.h"
 #include "front/toml_section.h"
 
 namespace chromeball {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "front/scene_file_composite.h"
+#include "front/scene_file_sections.h"
 
 namespace chromeball {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "front/scene_file_light.h"
+#include "front/scene_file_sections.h"
 
 #include <fmt/format.h>
 
 #include "front/arguments.h"
 #include "front/polygon_file.h"
 #include "lighting/export/light_list.h"
-#include "probe/sky.h"
+#include "probe/synth.h"
 
 namespace chromeball {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "front/setting_table.h"
+#include "front/settings.h"
 
 namespace chromeball {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/layers.h"
-#include "front/setting_table.h"
+#include "front/settings.h"
 #include "render/render.h"
 
 namespace chromeball {

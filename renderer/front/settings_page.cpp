@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "description/capabilities.h"
-#include "front/setting_table.h"
+#include "front/settings.h"
 #include "lighting/methods.h"
 
 namespace chromeball {

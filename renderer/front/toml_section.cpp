@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "front/setting_table.h"
+#include "front/settings.h"
 
 namespace chromeball {
 namespace {

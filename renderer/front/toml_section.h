@@ -12,7 +12,6 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/named_setting.h"
 #include "base/text.h"
 #include "front/settings.h"
 #include "math/vec.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/hash.h"
-#include "math/trig.h"
+#include "math/vec.h"
 #include "probe/mapping.h"
 #include "probe/solid_angle.h"
 

@@ -8,7 +8,7 @@
 namespace chromeball {
 namespace {
 
-constexpr uint64_t kPolygonSet = uint64_t(2) << 32;  // apart from the discs of sky_discs.h
+constexpr uint64_t kPolygonSet = uint64_t(2) << 32;  // apart from the discs of suns.h
 
 SphericalPolygon turned(const SphericalPolygon& polygon, const Rotation& rotation) {
   std::vector<dvec3> corners;

@@ -7,7 +7,7 @@
 
 #include "lighting/emitters.h"
 #include "lighting/light_source.h"
-#include "lighting/sky_discs.h"
+#include "lighting/suns.h"
 #include "scene/light.h"
 
 namespace chromeball {

@@ -3,7 +3,6 @@
 // Hemispheres are about +z. Pdfs are over solid angle.
 #pragma once
 
-#include "math/trig.h"
 #include "math/vec.h"
 
 namespace chromeball {

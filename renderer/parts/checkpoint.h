@@ -4,19 +4,39 @@
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "base/archive.h"
 #include "base/file.h"
 #include "base/message.h"
 #include "base/progress.h"
-#include "parts/render_part.h"
 #include "render/render_state.h"
+#include "session/finish.h"
 #include "session/run_job.h"
 #include "session/viewer.h"
 
 namespace chromeball {
+
+// Files of renders that are not complete: checkpoints, shards and crops. Each is an .exr with the
+// image so far, which other programs read, and the sums of the samples behind it (exr_state.h).
+
+// Which render a file is of, and how its image is made.
+struct RenderPart {
+  std::string identity;  // renderIdentity() (job_description.h)
+  FinishPlan plan;
+
+  // The first bytes of a file. Throws InputError if another version wrote it.
+  void archive(Archive& a);
+};
+
+// For OutputImage::state. Both must outlive the writing.
+std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result);
+
+// Without its images. Throws InputError.
+RenderPart readPartHeader(const std::filesystem::path& path);
 
 // Calls something again and again, so many seconds after its last call has ended.
 class Interval {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "image/io/read_image.h"
-#include "parts/render_part.h"
+#include "parts/checkpoint.h"
 
 namespace chromeball {
 

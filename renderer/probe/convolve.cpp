@@ -10,7 +10,6 @@
 #include "math/vec.h"
 #include "probe/irradiance.h"
 #include "probe/map_moments.h"
-#include "probe/spherical_harmonics.h"
 
 namespace chromeball {
 

@@ -9,8 +9,8 @@
 
 #include "base/message.h"
 #include "image/image.h"
+#include "probe/edit.h"
 #include "probe/mapping.h"
-#include "probe/repair.h"
 
 namespace chromeball {
 

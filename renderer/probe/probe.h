@@ -7,7 +7,6 @@
 
 #include "image/image.h"
 #include "math/rotation.h"
-#include "math/trig.h"
 #include "math/vec.h"
 
 namespace chromeball {
@@ -53,7 +52,7 @@ class MapTurn {
 // rows of W cells; the first and the last row of cells are half as high.
 class Probe {
  public:
-  // `latLong` has at least three channels and no invalid texel (repair.h). `rotation` turns the
+  // `latLong` has at least three channels and no invalid texel (edit.h). `rotation` turns the
   // environment. Throws InputError if a texel times `scale` is not finite, or `scale` is negative.
   explicit Probe(const Image& latLong, const Rotation& rotation = {}, const Rgb& scale = Rgb(1));
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "probe/suggest_polygons.h"
+#include "probe/polygon_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "probe/mapping.h"
-#include "probe/polygon_source.h"
 #include "probe/solid_angle.h"
 #include "probe/sun_extraction.h"
 

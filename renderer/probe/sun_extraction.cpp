@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "probe/sky.h"
 #include "probe/solid_angle.h"
+#include "probe/synth.h"
 
 namespace chromeball {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "transport/integrator.h"
-#include "transport/regularization.h"
+#include "transport/path_settings.h"
 
 namespace chromeball {
 namespace {

@@ -23,7 +23,7 @@ constexpr uint32_t samplesOf(int half, uint32_t samples) {
 // Each half of a pixel's samples is a sequence with its own randomisation. Where it is longer than
 // the table, the table is used again with another one.
 //
-// The samples of a shard (shard.h) are points of the whole render's sequence.
+// The samples of a shard (render_settings.h) are points of the whole render's sequence.
 class SampleSequence {
  public:
   explicit SampleSequence(const RenderSettings& settings);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/archive.h"
-#include "film/allocation.h"
+#include "film/noise.h"
 #include "render/guide_training.h"
 #include "render/render.h"
 #include "render/schedule.h"

@@ -3,7 +3,6 @@
 
 #include "base/parallel.h"
 #include "scene/bounds.h"
-#include "scene/interior_view.h"
 
 namespace chromeball {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/interior_view.h"
+#include "scene/framing.h"
 
 #include <array>
 

@@ -13,7 +13,6 @@
 #include "scene/material.h"
 #include "scene/mesh.h"
 #include "scene/motion.h"
-#include "scene/transform.h"
 
 namespace chromeball {
 

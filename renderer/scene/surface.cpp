@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "scene/camera_view.h"
+#include "scene/camera.h"
 #include "scene/extended_surface.h"
 
 namespace chromeball {

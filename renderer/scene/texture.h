@@ -38,7 +38,7 @@ struct Texture {
   // Whether filtering weights colours by alpha, so that the colours of transparent texels do not
   // bleed into opaque ones. True for the base colour of blended or masked materials.
   bool weightedByAlpha = false;
-  std::shared_ptr<const std::vector<TexelGrid>> mipLevels;  // mip_chain.h; null: none
+  std::shared_ptr<const std::vector<TexelGrid>> mipLevels;  // texture.h; null: none
 
   // Linear RGBA at uv (v down, texel centres at +0.5). Any finite uv is valid; others give texel 0.
   vec4 lookup(vec2 uv) const;
@@ -73,5 +73,14 @@ struct TextureSlot {
   // The factor by which the transform scales areas.
   float areaFactor() const { return std::fabs(uvRow0.x * uvRow1.y - uvRow0.y * uvRow1.x); }
 };
+
+// Mip levels of a texture.
+
+// The grid at half its size, at a quarter, and so on down to one texel; empty for a grid of one
+// texel. Each texel is the mean, in linear light, of the texels it covers, stored like those of the
+// grid (`srgb`: encoded). With `weightedByAlpha`, colours are weighted by alpha unless all alphas
+// are 0.
+std::vector<TexelGrid> makeMipLevels(const TexelGrid& grid, bool srgb,
+                                     bool weightedByAlpha = false);
 
 }  // namespace chromeball

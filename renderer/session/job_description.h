@@ -4,10 +4,14 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+
+#include <map>
 #include <string>
 #include <vector>
 
 #include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "scene/scene.h"
 #include "session/load_scene.h"
 
 namespace chromeball {
@@ -33,7 +37,7 @@ Metadata toMetadata(const nlohmann::ordered_json& description);
 // threads, on which times depend.
 std::string identityOf(const LoadedScene& loaded);
 
-// The same for parts of one render (render_part.h): also with the settings that a comparison
+// The same for parts of one render (checkpoint.h): also with the settings that a comparison
 // varies, and without threads.
 std::string renderIdentity(const LoadedScene& loaded);
 // The same for a scene and its light, whatever the camera, the image and the sampling, and the time
@@ -43,5 +47,16 @@ std::string withoutParts(const std::string& identity);  // without `shard` and `
 
 // The first difference between two identities: "`mis` was off and is power".
 std::string differenceOf(const std::string& stored, const std::string& own);
+
+// The names of the numbers in the layers `node` and `material`.
+
+// An attribute `manifest/LAYER` for each of these layers in the image: JSON {"1": "name", ...} in
+// ASCII, as in Cryptomatte's manifests (Friedman and Jones 2015) but with our numbers instead of
+// hashes. It lists only numbers that occur in the image. Names are truncated to 256 bytes; beyond a
+// total of 1 MiB, names are left out and their number is stored under "omitted".
+Metadata idManifests(const OutputImage& output, const Scene& scene);
+
+// The contents of such an attribute; empty if it is not well-formed.
+std::map<int, std::string> readManifest(const Metadata& metadata, const std::string& layer);
 
 }  // namespace chromeball

@@ -4,6 +4,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdint>
+#include <string>
+
 #include "base/message.h"
 #include "description/render_description.h"
 #include "session/run_job.h"
@@ -37,5 +40,18 @@ Messages checkOutputs(const RenderDescription& job);
 // can occur. Throws InputError if an output would overwrite an input, and makes the folders that
 // the scene file names for its images.
 void prepareOutputs(const RenderDescription& job, std::vector<std::string> inputs);
+
+// The machine, the program and the date of a measurement.
+
+struct Machine {
+  std::string processor, system, compiler, date;  // date: UTC
+  int threads = 0;                                // used by this run
+  std::string command;                            // quoted for a shell
+};
+Machine thisMachine();
+
+uint64_t peakMemoryBytes();  // of this process so far; 0 if the system does not tell
+
+std::string commandLine();  // of this process, quoted for a shell
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "session/load_messages.h"
+#include "session/load_scene.h"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,6 @@
 #include "description/capabilities.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/model_cache.h"
-#include "session/load_messages.h"
 #include "session/memory_estimate.h"
 #include "session/place_models.h"
 #include "session/run_composite.h"

@@ -8,7 +8,7 @@
 #include "description/render_description.h"
 #include "lighting/strategy.h"
 #include "probe/load.h"
-#include "scene/camera_view.h"
+#include "scene/camera.h"
 #include "scene/scene.h"
 #include "session/place_models.h"
 #include "session/scene_lighting.h"
@@ -54,5 +54,10 @@ struct FrameChange {
 // animated, what moves with it, for another frame of the same job. Not for composites; a probe that
 // turns must have a file.
 FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded, ModelCache& cache);
+
+// Messages to the user about the files of a job.
+
+// Messages about the job's settings, the models, the probe and the plate.
+Messages loadMessages(const LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "animation/motion_error.h"
 #include "animation/scene_motion.h"
 #include "base/error.h"
 #include "scene/gltf/load_gltf.h"

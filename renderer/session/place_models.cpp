@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "description/render_description.h"
 #include "scene/bounds.h"
-#include "scene/builder/add_lamp.h"
+#include "scene/builder/scene_builder.h"
 #include "scene/extended_surface.h"
 #include "scene/framing.h"
 #include "scene/gltf/load_gltf.h"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "approximate/environment_map.h"
-#include "base/named_setting.h"
+#include "base/text.h"
 #include "description/render_description.h"
 #include "lighting/polygon_lights.h"
 #include "lighting/strategy.h"

@@ -4,7 +4,7 @@
 #include "math/warp.h"
 #include "shading/bsdf_sample.h"
 #include "shading/fresnel.h"
-#include "shading/ggx_anisotropic.h"
+#include "shading/ggx.h"
 
 namespace chromeball {
 

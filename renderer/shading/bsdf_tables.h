@@ -11,7 +11,6 @@
 #include "math/sampler.h"
 #include "scene/material.h"
 #include "shading/ggx.h"
-#include "shading/ggx_anisotropic.h"
 
 namespace chromeball {
 
@@ -173,7 +172,7 @@ class GlassTable {
 // Those tables that the materials need, and no others: none for Lambertian materials. Copies share
 // the tables, each of which takes up to 0.3 s of one core. Must outlive the BSDFs.
 struct BsdfTables {
-  // `widened`: smooth materials may become rough (transport/regularization.h).
+  // `widened`: smooth materials may become rough (transport/path_settings.h).
   explicit BsdfTables(std::span<const Material> materials, bool widened = false);
   // Makes those that are missing.
   void complete(std::span<const Material> materials, bool widened = false);

@@ -10,7 +10,6 @@
 #include "shading/lambert.h"
 #include "shading/metallic_roughness.h"
 #include "shading/sheen.h"
-#include "shading/sheet.h"
 
 namespace chromeball {
 

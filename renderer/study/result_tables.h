@@ -5,9 +5,10 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <vector>
 
 #include "measure/bias_variance.h"
-#include "session/machine.h"
+#include "session/job_report.h"
 #include "study/results.h"
 
 namespace chromeball {
@@ -41,5 +42,13 @@ std::string significantText(const Estimate& e);
 
 // `digits` significant digits, without an exponent up to 1e7.
 std::string shortNumber(double x, int digits = 3);
+
+// A summary of a comparison in words.
+
+// One sentence each: the strategy with the smallest error at equal samples, and at equal time, with
+// its lead and the confidence interval of that; for each biased strategy the size of its bias and
+// the number of samples above which bias exceeds noise. Empty if no budget has been rendered with
+// all strategies and no strategy is biased.
+std::vector<std::string> verdict(const Study& study, const StudyResults& results);
 
 }  // namespace chromeball

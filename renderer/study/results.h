@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "measure/bias_variance.h"
-#include "measure/power_law.h"
 #include "measure/statistics.h"
 #include "study/render_store.h"
 

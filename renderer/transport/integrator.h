@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "film/invalid.h"
+#include "film/film.h"
 #include "film/layer_film.h"
 #include "transport/path.h"
 

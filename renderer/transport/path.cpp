@@ -8,7 +8,6 @@
 #include "transport/light_groups.h"
 #include "transport/pass_through.h"
 #include "transport/path_settings.h"
-#include "transport/regularization.h"
 
 namespace chromeball {
 namespace {

@@ -38,7 +38,7 @@ struct PathState {
   GuidedBounce guided;                // the first one
   bool scattered = false;             // by a lobe that is not delta: shadow rays are possible
   float widening = 0;                 // regularizationWidth() of the sample; 0: no regularisation
-  float minAlpha = 0;                 // of the next vertices (regularization.h)
+  float minAlpha = 0;                 // of the next vertices (path_settings.h)
   Media media;                        // the medium of the ray
   Place place;                        // at the origin of the ray, whose surfaces are still to cross
   float length = 0;                   // of the path from the camera, metres

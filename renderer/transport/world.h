@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "lighting/scene_sources.h"
@@ -18,11 +19,17 @@ namespace chromeball {
 struct World {
   // `masks`: by instance, for rays that see part of the scene (trace/ray.h); empty: all rays see
   // all instances. `described` must outlive this. Throws RunError.
-  explicit World(const Scene& described, const std::vector<RayMask>& masks = {});
+  explicit World(const Scene& described, const std::vector<RayMask>& masks = {})
+      : World(described, masks, BsdfTables(described.materials)) {}
   // Copies the BSDF tables of another world, which must include those that the materials need.
   // `earlier`: as Accel.
   World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables,
-        std::shared_ptr<BuiltGeometry> earlier = nullptr);
+        std::shared_ptr<BuiltGeometry> earlier = nullptr)
+      : scene(described),
+        accel(described, masks, std::move(earlier)),
+        sources(described),
+        sharedPlaces(accel),
+        bsdfTables(tables) {}
 
   const Scene& scene;
   const Accel accel;

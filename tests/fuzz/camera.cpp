@@ -4,8 +4,8 @@
 #include "front/scene_file.h"
 #include "front/scene_file_camera.h"
 #include "fuzz.h"
-#include "scene/solve/fspy.h"
 #include "scene/solve/observations.h"
+#include "scene/solve/solved_camera.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace chromeball;

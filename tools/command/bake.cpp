@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "bake/baked_file.h"
-#include "bake/texel_filter.h"
+#include "bake/lightmap.h"
 #include "bake/vertex_light.h"
 #include "bake_options.h"
 #include "base/error.h"

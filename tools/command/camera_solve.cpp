@@ -14,12 +14,10 @@
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "messages.h"
-#include "scene/camera_view.h"
+#include "scene/camera.h"
 #include "scene/gltf/load_gltf.h"
-#include "scene/solve/fspy.h"
 #include "scene/solve/observations.h"
-#include "scene/solve/picture_lines.h"
-#include "scene/solve/solve_lines.h"
+#include "scene/solve/solve_camera.h"
 #include "scene/solve/solved_camera.h"
 
 namespace chromeball {

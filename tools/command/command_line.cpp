@@ -15,7 +15,7 @@
 #include "commands.h"
 #include "messages.h"
 #include "option_typos.h"
-#include "session/machine.h"
+#include "session/job_report.h"
 #include "session/memory_estimate.h"
 
 namespace chromeball {

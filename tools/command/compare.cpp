@@ -16,14 +16,13 @@
 #include "progress_bar.h"
 #include "scene_options.h"
 #include "session/job_description.h"
-#include "session/machine.h"
+#include "session/job_report.h"
 #include "session/run_job.h"
 #include "study/report/report.h"
 #include "study/report/report_images.h"
 #include "study/result_tables.h"
 #include "study/study.h"
 #include "study/study_run.h"
-#include "study/verdict.h"
 #include "thread_limit.h"
 
 namespace chromeball {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <span>
 
-#include "front/setting_table.h"
+#include "front/settings.h"
 
 namespace chromeball {
 namespace {

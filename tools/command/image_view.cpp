@@ -11,7 +11,7 @@
 #include "input_image.h"
 #include "layer_view.h"
 #include "messages.h"
-#include "session/id_manifest.h"
+#include "session/job_description.h"
 
 namespace chromeball {
 namespace {

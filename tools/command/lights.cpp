@@ -14,7 +14,7 @@
 #include "light_options.h"
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_preview.h"
-#include "lighting/fit/light_error.h"
+#include "lighting/fit/light_descent.h"
 #include "lighting/methods.h"
 #include "lights_polygons.h"
 #include "math/icosphere.h"

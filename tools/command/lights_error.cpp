@@ -11,7 +11,7 @@
 #include "commands.h"
 #include "image/io/output_file.h"
 #include "light_options.h"
-#include "lighting/fit/light_error.h"
+#include "lighting/fit/light_descent.h"
 #include "lighting/methods.h"
 #include "math/icosphere.h"
 #include "messages.h"

@@ -10,7 +10,7 @@
 #include "image/io/write_image.h"
 #include "lighting/export/light_preview.h"
 #include "messages.h"
-#include "probe/suggest_polygons.h"
+#include "probe/polygon_source.h"
 
 namespace chromeball {
 namespace {

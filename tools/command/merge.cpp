@@ -15,7 +15,7 @@
 #include "parts/merge.h"
 #include "progress_bar.h"
 #include "render_hints.h"
-#include "session/id_manifest.h"
+#include "session/job_description.h"
 #include "session/job_report.h"
 
 namespace chromeball {

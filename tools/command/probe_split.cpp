@@ -12,8 +12,8 @@
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_list.h"
 #include "messages.h"
-#include "probe/sky.h"
 #include "probe/sun_extraction.h"
+#include "probe/synth.h"
 #include "probe_commands.h"
 
 namespace chromeball {

@@ -14,7 +14,7 @@
 #include "lighting/export/light_list.h"
 #include "messages.h"
 #include "probe/capture/sun_from_ball.h"
-#include "probe/sky.h"
+#include "probe/synth.h"
 #include "probe_commands.h"
 #include "write_probe.h"
 

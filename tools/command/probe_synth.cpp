@@ -8,7 +8,6 @@
 #include "base/text.h"
 #include "front/arguments.h"
 #include "image/io/write_image.h"
-#include "probe/sky.h"
 #include "probe/synth.h"
 #include "probe_commands.h"
 #include "write_probe.h"

@@ -13,7 +13,6 @@
 #include "probe/load.h"
 #include "relight/stage/light_stage.h"
 #include "relight/stage/relit_stage.h"
-#include "relight/stage/stage_photographs.h"
 #include "session/memory_estimate.h"
 #include "viewers/relight_server.h"
 

@@ -4,7 +4,7 @@
 #include "flat.h"
 #include "glb_objects.h"
 #include "noise.h"
-#include "probe/sky.h"
+#include "probe/synth.h"
 #include "round_texels.h"
 
 namespace chromeball::demo {

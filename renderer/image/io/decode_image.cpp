@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "image/io/image_format.h"
-#include "image/io/sample_reader.h"
 #include "image/size_limits.h"
 
 namespace chromeball {

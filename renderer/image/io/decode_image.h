@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,5 +41,46 @@ DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name);
 
 // As decodedBytes().
 uint64_t webpBytes(std::span<const uint8_t> file);
+
+// PNG and JPEG: files of integer samples, decoded row by row.
+
+// Interleaved samples of 8 or 16 bits: one channel (grey), two (grey, alpha), three (RGB) or four
+// (RGB, alpha). Alpha is not associated.
+struct SampleLayout {
+  int width = 0, height = 0, channels = 0, bits = 8;
+  bool hasAlpha() const { return channels % 2 == 0; }
+};
+
+// Throws if an image of this size must not be read.
+using CheckSize = std::function<void(const SampleLayout&)>;
+
+// An open file. Metadata is skipped: profiles, EXIF blocks and comments are never parsed.
+class SampleReader {
+ public:
+  // Row `y` from the top; samples of 16 bits are uint16_t.
+  using Row = std::function<void(int y, const void* samples)>;
+
+  virtual ~SampleReader() = default;
+  const SampleLayout& layout() const { return layout_; }
+
+  // Decodes all rows in turn; once. Throws std::runtime_error with the reason, and what `row`
+  // throws.
+  virtual void read(const Row& row) = 0;
+
+ protected:
+  SampleLayout layout_;
+};
+
+// Read the header of a file, which must outlive the reader. `check` runs before memory is allocated
+// for the image. Throw std::runtime_error with the reason, and what `check` throws.
+//
+// Low bit depths become 8 bits, palettes RGB, and transparency alpha.
+std::unique_ptr<SampleReader> openPng(std::span<const uint8_t> file, const CheckSize& check);
+// CMYK becomes RGB.
+std::unique_ptr<SampleReader> openJpeg(std::span<const uint8_t> file, const CheckSize& check);
+
+// Each scan of a progressive JPEG visits every block, even if the scan has only a dozen bytes.
+// Encoders write about ten scans.
+inline constexpr int kMaxJpegScans = 100;
 
 }  // namespace chromeball

@@ -20,9 +20,8 @@
 #include "base/file.h"
 #include "base/progress.h"
 #include "image/io/color_channels.h"
-#include "image/io/exr_header.h"
 #include "image/io/exr_metadata.h"
-#include "image/io/unreadable.h"
+#include "image/io/image_format.h"
 
 namespace chromeball {
 namespace {

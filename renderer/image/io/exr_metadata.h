@@ -4,7 +4,10 @@
 
 #include <OpenEXR/ImfForward.h>
 
+#include <filesystem>
+
 #include "image/io/read_image.h"
+#include "image/size_limits.h"
 
 namespace chromeball {
 
@@ -13,5 +16,16 @@ namespace chromeball {
 Metadata metadataOf(const Imf::Header& header);
 std::optional<Chromaticities> chromaticitiesOf(const Imf::Header& header);
 void setMetadata(const Metadata& metadata, Imf::Header& header);
+
+// Checks the headers of an OpenEXR file before the library reads them.
+
+// Throws InputError if an attribute is longer than the file or of the wrong length for its type, or
+// if a part exceeds the limits (size_limits.h): its image `maxNumbers`, its tiles or the rows that
+// are compressed together kMaxImageFloats. Returns the largest number of rows that are compressed
+// together.
+int checkExrHeaders(const std::filesystem::path& path, uint64_t maxNumbers = kMaxImageFloats);
+
+// Lets OpenEXR compress on all cores, unless the process has chosen a number of threads for it.
+void useExrThreads();
 
 }  // namespace chromeball

@@ -3,7 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <new>
 #include <span>
+#include <string>
+
+#include "base/error.h"
 
 namespace chromeball {
 
@@ -12,5 +17,28 @@ enum class ImageFormat { Exr, RadianceHdr, Pfm, Png, Jpeg, Webp, Tiff, Unknown }
 inline constexpr size_t kFormatBytes = 12;  // that imageFormat() looks at, at most
 
 ImageFormat imageFormat(std::span<const uint8_t> firstBytes);
+
+// What readers' libraries throw about a damaged file becomes an InputError of one line.
+
+// Throws a library's message about `path` as an InputError of one line.
+[[noreturn]] void throwUnreadable(const std::filesystem::path& path, std::string reason);
+
+// Calls read(), which calls a library.
+template <class Read>
+auto readByLibrary(const std::filesystem::path& path, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError&) {
+    throw;
+  } catch (const RunError&) {
+    throw;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throwUnreadable(path, "its header claims more texels than fit into memory");
+  } catch (const std::exception& error) {
+    throwUnreadable(path, error.what());
+  }
+}
 
 }  // namespace chromeball

@@ -12,7 +12,7 @@
 #include <jerror.h>
 
 #include "base/progress.h"
-#include "image/io/sample_reader.h"
+#include "image/io/decode_image.h"
 #include "image/size_limits.h"
 
 namespace chromeball {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "image/io/decode_image.h"
 #include "image/io/metadata_blocks.h"
-#include "image/io/sample_reader.h"
 
 namespace chromeball {
 namespace {

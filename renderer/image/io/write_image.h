@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,5 +68,11 @@ Messages writeImage(const std::filesystem::path& path, const Image& color,
 // - in a .png and an .hdr, negative channels;
 // - in an .hdr, channels above the largest number of RGBE, and infinite and NaN ones.
 Messages lostLight(const std::filesystem::path& path, const Image& color);
+
+// Encodes a PNG in memory: for images embedded in documents, and for files.
+
+// `bytes` are rows of interleaved 8-bit sRGB channels: one (grey), three, or four with unassociated
+// alpha. The encoding is lossless.
+std::vector<uint8_t> encodePng(int width, int height, int channels, std::span<const uint8_t> bytes);
 
 }  // namespace chromeball

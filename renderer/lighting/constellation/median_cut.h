@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "lighting/constellation/region_table.h"
+#include "lighting/constellation/texel_table.h"
 
 namespace chromeball {
 

@@ -12,7 +12,7 @@ namespace chromeball {
 struct IrradianceFit {
   Constellation lights;                // at most as many as requested; none is black
   Rgb ambient{0};                      // radiance from all directions; 0 unless requested
-  double meanError = 0, maxError = 0;  // percent, over 20480 normals (light_error.h)
+  double meanError = 0, maxError = 0;  // percent, over 20480 normals (light_descent.h)
 };
 
 inline constexpr int kMaxFittedLights = 256;

@@ -2,8 +2,11 @@
 // Optimises directional lights: the colours for given directions, and the directions by descent.
 #pragma once
 
+#include <cmath>
+#include <span>
 #include <vector>
 
+#include "lighting/constellation/directional_light.h"
 #include "lighting/fit/radiance_points.h"
 #include "probe/mapping.h"
 
@@ -36,5 +39,52 @@ Tangents tangentsOf(const dvec3& direction);
 // projection: Golub and Pereyra 1973; Kaufman's approximation 1975). Never increases the misfit.
 // Stops after `maxSteps`, or when a step gains almost nothing.
 void descend(FittedLights& lights, const RadiancePoints& probe, bool ambient, int maxSteps);
+
+// The error of irradiance of lights that replace a probe (Madsen and Laursen 2007, section 5).
+
+// Irradiance, W/m^2, on surfaces with these unit normals, from the lights (as if their angles were
+// 0) and the radiance `ambient` from all directions.
+std::vector<dvec3> irradianceOf(const Constellation& lights, const Rgb& ambient,
+                                std::span<const vec3> normals);
+
+// Percent of the probe's mean irradiance (over normals and RGB).
+struct LightError {
+  double mean, max;
+};
+
+// Mean and maximum over the normals of |E_lights - E_probe| per channel, averaged over RGB. Both
+// lists have one irradiance per normal. For a black probe the percentage is 0 if the lights are
+// black too, else infinite.
+LightError lightError(std::span<const dvec3> lights, std::span<const dvec3> probe);
+
+// The irradiance of a directional light as a function of the normal, and inner products of two such
+// functions.
+
+// A light of unit irradiance from direction d gives a surface with normal n the irradiance
+// max(0, n . d): its pattern. The integral of the product of two patterns over all normals has a
+// closed form (the arc-cosine kernel of degree one, Cho and Saul 2009), so no set of normals is
+// needed. With t the angle between a and b, and tangents s and u (s . a = 0, u . b = 0):
+//   integral of max(0, n.a) max(0, n.b) dn                   = 2/3 (sin t + (pi - t) cos t)
+//   its derivative along u, of b                             = 2/3 (pi - t) a.u
+//   its derivative along s, of a, and u, of b (the integral of n.s n.u over both hemispheres)
+//                                        = 2/3 ((pi - t) s.u + (s.b)(u.a) / sin t)
+struct CosinePair {
+  double cosine, sine, supplement;  // of t; pi - t
+
+  CosinePair(const dvec3& a, const dvec3& b)
+      : cosine(dot(a, b)), sine(length(cross(a, b))), supplement(std::atan2(sine, -cosine)) {}
+
+  double product() const { return 2.0 / 3 * (sine + supplement * cosine); }
+  double slope(double au) const { return 2.0 / 3 * supplement * au; }
+  double slopeProduct(double su, double sb, double ua) const {
+    const double bend = sine > 1e-12 ? sb * ua / sine : 0;
+    return 2.0 / 3 * (supplement * su + bend);
+  }
+};
+
+// Unit radiance from all directions gives every surface the irradiance pi. The products of this
+// pattern with that of a light, and with itself.
+inline constexpr double kAmbientTimesLight = kPiD * kPiD;
+inline constexpr double kAmbientTimesAmbient = 4 * kPiD * kPiD * kPiD;
 
 }  // namespace chromeball

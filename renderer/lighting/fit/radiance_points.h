@@ -10,7 +10,7 @@
 namespace chromeball {
 
 // The integral over all normals of the probe's irradiance x the pattern max(0, n . d) of a light
-// from d (light_error.h), and its derivative: along a unit tangent t of d, channel c of the
+// from d (light_descent.h), and its derivative: along a unit tangent t of d, channel c of the
 // product changes by dot(t, slope[c]).
 struct PatternProduct {
   dvec3 product;   // RGB

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "probe/capture/edge_map.h"
-#include "probe/capture/outline.h"
 
 namespace chromeball {
 namespace {

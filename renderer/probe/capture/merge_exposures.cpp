@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/merge_exposures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 
+#include "base/error.h"
 #include "base/parallel.h"
+#include "image/image.h"
+#include "image/io/exif.h"
 
 namespace chromeball {
 namespace {
@@ -91,6 +95,124 @@ MergedExposures mergeExposures(std::span<const Exposure> exposures, const Respon
     count(exposures, y, merged.uses);
   });
   return merged;
+}
+
+namespace {
+
+std::string kindOf(int bits) {
+  return bits > 0 ? fmt::format("integers of {} bits", bits) : std::string("floats");
+}
+
+float largestTexel(const std::vector<Image>& images) {
+  float largest = 0;
+  for (const Image& image : images)
+    for (const float texel : image.texels)
+      if (std::isfinite(texel)) largest = std::max(largest, texel);
+  return largest;
+}
+
+void toSmallestSize(std::vector<Image>& images) {
+  int width = images.front().width, height = images.front().height;
+  for (const Image& image : images)
+    width = std::min(width, image.width), height = std::min(height, image.height);
+  for (Image& image : images) image = resampled(image, width, height);
+}
+
+}  // namespace
+
+PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
+                            bool resizes) {
+  PhotographLevels result;
+  for (const std::string& file : files) {
+    ImageFile read = readImageFile(file, IntegerTexels::Levels);
+    const int bits = read.bits;
+    const std::optional<Transfer> transfer = read.transfer;
+    result.messages.insert(result.messages.end(), read.messages.begin(), read.messages.end());
+    auto [image, primaries] = storedColorOf(std::move(read), file);
+    if (result.levels.empty()) {
+      result.bits = bits;
+      result.primaries = primaries;
+      result.transfer = transfer;
+    } else {
+      const Image& first = result.levels.front();
+      if (!resizes && (image.width != first.width || image.height != first.height))
+        throwInput(
+            "{}: is {} x {}, but {} is {} x {}; photographs of a series have one size, or, "
+            "for crops of a ball, are resized",
+            file, image.width, image.height, files.front(), first.width, first.height);
+      if (bits != result.bits)
+        throwInput("{}: has {}, but {} has {}; photographs of a series are of one kind", file,
+                   kindOf(bits), files.front(), kindOf(result.bits));
+      if (primaries != result.primaries)
+        throwInput("{}: its primaries are not those of {}; photographs of a series have the same",
+                   file, files.front());
+      if (transfer != result.transfer)
+        throwInput(
+            "{}: the encoding of its levels that it states (gAMA, sRGB, cICP) is not that of {}; "
+            "photographs of a series have the same",
+            file, files.front());
+    }
+    result.levels.push_back(std::move(image));
+  }
+  for (Image& image : result.levels) {
+    size_t& invalid = result.invalid.emplace_back(0);
+    for (float& texel : image.texels)
+      if (!(texel >= 0)) ++invalid, texel = 0;
+  }
+  if (resizes) toSmallestSize(result.levels);
+  if (result.bits > 0) return result;
+  result.white = white.value_or(std::max(1.0f, largestTexel(result.levels)));
+  for (Image& image : result.levels)
+    forRanges(image.texels.size(), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) image.texels[i] /= result.white;
+    });
+  return result;
+}
+
+namespace {
+
+void checkCount(const std::vector<double>& numbers, size_t files, const char* option) {
+  if (!numbers.empty() && numbers.size() != files)
+    throwInput("{}: has {} numbers for {} photographs; give one for each", option, numbers.size(),
+               files);
+}
+
+// What one photograph states and another does not makes their ratio unknown.
+void checkAllOrNone(const std::vector<std::string>& files,
+                    const std::vector<CameraSettings>& settings,
+                    std::optional<double> CameraSettings::*member, const char* name) {
+  for (size_t i = 1; i < files.size(); ++i)
+    if ((settings[i].*member).has_value() != (settings[0].*member).has_value()) {
+      const bool first = (settings[0].*member).has_value();
+      throwInput("{}: has no {} in its EXIF block, but {} has one; give the exposures",
+                 files[first ? i : 0], name, files[first ? 0 : i]);
+    }
+}
+
+}  // namespace
+
+std::vector<CameraSettings> cameraSettings(const std::vector<std::string>& files,
+                                           const std::vector<double>& times,
+                                           const std::vector<double>& apertures) {
+  checkCount(times, files.size(), "exposures");
+  checkCount(apertures, files.size(), "apertures");
+  std::vector<CameraSettings> all;
+  for (size_t i = 0; i < files.size(); ++i) {
+    CameraSettings settings;
+    if (times.empty()) {
+      const Exif exif = readExif(files[i]);
+      if (!exif.exposureTime)
+        throwInput("{}: has no exposure time in an EXIF block; give the exposures", files[i]);
+      settings = {*exif.exposureTime, exif.aperture, exif.iso};
+    } else {
+      settings.time = times[i];
+    }
+    if (!apertures.empty()) settings.aperture = apertures[i];
+    all.push_back(settings);
+  }
+  checkAllOrNone(files, all, &CameraSettings::aperture, "aperture");
+  checkAllOrNone(files, all, &CameraSettings::iso, "ISO");
+  return all;
 }
 
 }  // namespace chromeball

@@ -2,8 +2,14 @@
 // One image of high dynamic range from photographs that differ in exposure.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "base/message.h"
+#include "image/image.h"
+#include "image/io/read_image.h"
 #include "probe/capture/exposure.h"
 #include "probe/capture/response_curve.h"
 
@@ -29,5 +35,33 @@ struct MergedExposures {
 // All images have the same size; there is at least one. Parallel; the same bits for any number of
 // threads.
 MergedExposures mergeExposures(std::span<const Exposure> exposures, const ResponseCurve& response);
+
+// Reads the photographs of a series.
+
+struct PhotographLevels {
+  std::vector<Image> levels;  // as encoded, divided by `white`; three channels; of one size
+  std::optional<Chromaticities> primaries;  // of these channels; nullopt: Rec. 709's, or grey
+  std::optional<Transfer> transfer;         // that the files state
+  int bits = 0;                             // of the files' channels; 0: floats
+  float white = 1;                          // the texel of the files that is level 1
+  std::vector<size_t> invalid;  // channels of each file that are NaN or negative: level 0
+  Messages messages;            // of the readers
+};
+
+// `resizes`: photographs of several sizes are crops of one thing, such as a ball, and are resampled
+// to the smallest width and height. `white` is that of float files, which are otherwise white at 1,
+// or at their largest texel if that is higher. Integers are white at 1. Throws InputError if a file
+// is no image, or if sizes, kinds of numbers, primaries or stated transfers differ.
+PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
+                            bool resizes = false);
+
+// The camera's settings of photographs, from their EXIF blocks or from the user.
+
+// `times` (seconds) and `apertures` (f-numbers), one for each file, replace those of EXIF; either
+// may be empty. If there are times, nothing is read from the files: no ISO either. Otherwise each
+// file must state its time, and all of them or none the aperture and the ISO. Throws InputError.
+std::vector<CameraSettings> cameraSettings(const std::vector<std::string>& files,
+                                           const std::vector<double>& times,
+                                           const std::vector<double>& apertures);
 
 }  // namespace chromeball

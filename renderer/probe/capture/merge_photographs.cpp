@@ -9,9 +9,9 @@
 #include "base/error.h"
 #include "image/io/read_image.h"
 #include "math/cdf.h"
-#include "probe/capture/find_shift.h"
-#include "probe/capture/read_levels.h"
-#include "probe/capture/solve_response.h"
+#include "probe/capture/align.h"
+#include "probe/capture/exposure.h"
+#include "probe/capture/merge_exposures.h"
 
 namespace chromeball {
 namespace {

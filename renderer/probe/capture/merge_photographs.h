@@ -15,7 +15,7 @@ namespace chromeball {
 
 struct PhotographSeries {
   std::vector<std::string> files;
-  std::vector<double> times, apertures;  // as in cameraSettings() (read_levels.h)
+  std::vector<double> times, apertures;  // as in cameraSettings() (merge_exposures.h)
   std::vector<ApertureRatio> apertureRatios;
 
   struct Filter {
@@ -30,13 +30,13 @@ struct PhotographSeries {
   };
   std::vector<FlatField> flatFields;
 
-  // linear, srgb, solve (solve_response.h) or a file (response_curve.h). Empty: what the files
+  // linear, srgb, solve (exposure.h) or a file (response_curve.h). Empty: what the files
   // state, else srgb for 8 bits, else linear.
   std::string response;
   double smoothness = 20;      // of solve
-  std::optional<float> white;  // of float files (read_levels.h)
-  bool checkAlignment = true;  // find_shift.h
-  bool resizes = false;        // read_levels.h
+  std::optional<float> white;  // of float files (merge_exposures.h)
+  bool checkAlignment = true;  // align.h
+  bool resizes = false;        // merge_exposures.h
 };
 
 struct MergedPhotographs {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "probe/capture/outline.h"
+#include "probe/capture/find_circle.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "image/io/read_image.h"
-#include "probe/repair.h"
+#include "probe/edit.h"
 
 namespace chromeball {
 

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string_view>
 #include <vector>
 
+#include "base/message.h"
 #include "image/image.h"
 #include "probe/probe.h"
 #include "relight/stage/direction_basis.h"
@@ -59,5 +61,28 @@ std::vector<Rgb> lightWeights(const DirectionBasis& basis, const Image& latLong,
 // visibility, and interreflection. Of boxes one texel for each; of other bases 64 x 32 texels, of
 // which each shows the cell of its centre, or the sum of the harmonics.
 Image reflectanceFunction(const LightStage& stage, int x, int y);
+
+// A light stage from photographs: pictures of a subject under a lamp in each of many directions
+// (HDRI book, section 9.9.1, Figure 9.42).
+
+struct StagePhotograph {
+  std::string file;  // relative to the photographs' folder
+  vec3 direction;    // unit, towards the lamp
+};
+
+// Lines `FILE,X,Y,Z` (a direction of any length) or `FILE,AZIMUTH,ELEVATION` (degrees:
+// directionAt(), probe/mapping.h), all of one kind. A first line with names, empty lines and lines
+// that begin with # are skipped. Throws InputError ("CSV:LINE: reason") for other lines, and for a
+// file or a direction that occurs twice.
+std::vector<StagePhotograph> readPhotographs(const std::filesystem::path& csv);
+
+// Each image shows the subject under distant light that puts `irradiance` on a surface that faces
+// it. It stands for the light of its Voronoi cell on the sphere: the element is the image x the
+// cell's solid angle / irradiance. Images are linear; files with integers are decoded as sRGB.
+// `messages` gets the readers'. Throws InputError for images of different size or with values that
+// are not finite, and if the stage takes more than `memory` bytes.
+LightStage stageOf(const std::filesystem::path& folder,
+                   const std::vector<StagePhotograph>& photographs, float irradiance, double memory,
+                   Messages& messages);
 
 }  // namespace chromeball

@@ -8,8 +8,7 @@
 #include <functional>
 #include <optional>
 
-#include "image/io/exr_rows_reader.h"
-#include "image/io/exr_rows_writer.h"
+#include "image/io/exr_rows.h"
 #include "relight/stage/light_stage.h"
 
 namespace chromeball {

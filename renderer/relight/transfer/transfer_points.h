@@ -8,7 +8,7 @@
 
 #include "bake/bake.h"
 #include "base/parallel.h"
-#include "relight/transfer/vertex_transfer.h"
+#include "relight/transfer/transfer_model.h"
 #include "transport/path.h"
 
 namespace chromeball {

@@ -8,6 +8,7 @@
 #include <string>
 #include <tuple>
 
+#include "scene/light.h"
 #include "scene/scene.h"
 
 namespace chromeball {
@@ -63,5 +64,12 @@ class SceneBuilder {
   Scene& scene_;
   std::map<std::tuple<const TexelGrid*, bool, bool>, MipChain> chains_;  // by srgb, weightedByAlpha
 };
+
+// Lamps of a scene file, added to a scene.
+
+// Adds the lamp to the scene, whose origin is at `origin` in world space. A disc becomes a
+// single-sided emitting polygon of kDiscSides sides with exactly the area of the disc.
+inline constexpr int kDiscSides = 128;
+void addLamp(Scene& scene, const Lamp& lamp, const glm::dvec3& origin);
 
 }  // namespace chromeball

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "scene/gltf/accessor.h"
-#include "scene/gltf/extension_members.h"
+#include "scene/gltf/compressed_mesh.h"
 #include "scene/gltf/gltf_file.h"
-#include "scene/gltf/meshopt.h"
+#include "scene/gltf/gltf_json.h"
 
 namespace chromeball {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/progress.h"
 #include "image/io/decode_image.h"
 #include "image/io/texel_file.h"
-#include "scene/mip_chain.h"
+#include "scene/texture.h"
 
 namespace chromeball {
 namespace {

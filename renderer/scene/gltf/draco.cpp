@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/gltf/draco.h"
+#include "scene/gltf/compressed_mesh.h"
 
 #include <draco/compression/decode.h>
 #include <draco/compression/point_cloud/point_cloud_decoder.h>
@@ -10,7 +10,7 @@
 #include <cstring>
 #include <new>
 
-#include "scene/gltf/extension_members.h"
+#include "scene/gltf/gltf_json.h"
 
 namespace chromeball {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/gltf/instances.h"
+#include "scene/gltf/node_tree.h"
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -10,11 +10,11 @@
 #include "base/text.h"
 #include "scene/builder/scene_builder.h"
 #include "scene/gltf/accessor.h"
-#include "scene/gltf/extension_members.h"
+#include "scene/gltf/gltf_json.h"
 #include "scene/gltf/material_reader.h"
 #include "scene/gltf/mesh.h"
-#include "scene/mesh_attributes.h"
-#include "scene/transform.h"
+#include "scene/mesh.h"
+#include "scene/motion.h"
 
 namespace chromeball {
 namespace {

@@ -10,9 +10,9 @@
 #include "base/parallel.h"
 #include "image/io/decode_image.h"
 #include "probe/convert.h"
-#include "probe/repair.h"
+#include "probe/edit.h"
 #include "probe/solid_angle.h"
-#include "scene/gltf/extension_members.h"
+#include "scene/gltf/gltf_json.h"
 #include "scene/texture.h"
 
 namespace chromeball {

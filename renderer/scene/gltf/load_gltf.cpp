@@ -10,15 +10,13 @@
 
 #include "base/text.h"
 #include "scene/gltf/animation.h"
-#include "scene/gltf/draco.h"
+#include "scene/gltf/compressed_mesh.h"
 #include "scene/gltf/gltf_file.h"
-#include "scene/gltf/instances.h"
 #include "scene/gltf/lights.h"
-#include "scene/gltf/meshopt.h"
 #include "scene/gltf/model_cache.h"
 #include "scene/gltf/node_tree.h"
 #include "scene/gltf/variants.h"
-#include "scene/transform.h"
+#include "scene/motion.h"
 
 namespace chromeball {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // MaterialReader: the extensions that add lobes and media to metallic-roughness materials.
-#include "scene/gltf/extension_members.h"
+#include "scene/gltf/gltf_json.h"
 #include "scene/gltf/material_reader.h"
 
 namespace chromeball {

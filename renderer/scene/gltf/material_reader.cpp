@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "scene/gltf/decode_images.h"
-#include "scene/gltf/extension_members.h"
+#include "scene/gltf/gltf_json.h"
 
 namespace chromeball {
 namespace {

@@ -11,8 +11,8 @@
 #include "scene/builder/complete_mesh.h"
 #include "scene/extended_surface.h"
 #include "scene/gltf/accessor.h"
-#include "scene/gltf/pose.h"
-#include "scene/mesh_attributes.h"
+#include "scene/gltf/animation.h"
+#include "scene/mesh.h"
 
 namespace chromeball {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "scene/gltf/animation.h"
 #include "scene/gltf/gltf_file.h"
 #include "scene/gltf/model_cache.h"
-#include "scene/gltf/pose.h"
 #include "scene/scene.h"
 
 namespace chromeball {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/gltf/meshopt.h"
+#include "scene/gltf/compressed_mesh.h"
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "scene/gltf/extension_members.h"
+#include "scene/gltf/gltf_json.h"
 
 namespace chromeball {
 namespace {

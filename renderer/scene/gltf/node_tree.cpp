@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "scene/gltf/extension_members.h"
+#include "scene/gltf/gltf_json.h"
 
 namespace chromeball {
 namespace {

@@ -2,6 +2,7 @@
 // The camera of a photograph.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,5 +69,13 @@ Messages doubtsAbout(const std::vector<ObservedPoint>& points, const ImageSize& 
 
 // About a camera that does not see the model.
 Messages doubtsAbout(const SolvedCamera& camera, const Bounds& model);
+
+// The camera of a file of fSpy (fspy.io): its menu Export, Camera parameters as JSON.
+
+// The file has, among others, cameraTransform (from the camera, which looks along -Z with +Y up, to
+// the scene; rows), verticalFieldOfView (radians), principalPoint (from the middle of the image, in
+// units of half its longer side, y up), imageWidth and imageHeight. `zUp`: the scene's z axis is
+// up, as in Blender, and becomes Y: (x, y, z) is (x, z, -y) here. Throws InputError.
+SolvedCamera readFspy(const std::filesystem::path& path, bool zUp);
 
 }  // namespace chromeball

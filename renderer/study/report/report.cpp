@@ -14,7 +14,6 @@
 #include "study/report/log_log_plot.h"
 #include "study/report/report_images.h"
 #include "study/result_tables.h"
-#include "study/verdict.h"
 
 namespace chromeball {
 

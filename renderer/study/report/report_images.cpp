@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "base/json.h"
-#include "image/io/encode_png.h"
+#include "image/io/write_image.h"
 #include "measure/false_color.h"
 
 namespace chromeball {

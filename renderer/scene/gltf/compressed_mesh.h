@@ -11,4 +11,10 @@ namespace chromeball {
 // its accessors.
 void decodeDraco(GltfFile& file);
 
+// EXT_meshopt_compression and KHR_meshopt_compression: buffer views whose bytes are compressed.
+
+// Replaces every compressed buffer view by one of the decoded bytes. Throws InputError if the
+// compressed data or its description is invalid.
+void decodeMeshopt(GltfFile& file);
+
 }  // namespace chromeball

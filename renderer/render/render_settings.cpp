@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/shard.h"
+#include "render/render_settings.h"
 
 #include <algorithm>
 

@@ -17,4 +17,10 @@ std::vector<Lamp> readLamps(const Entry& entry, std::vector<std::string>& files)
 // Reads one table: adds a polygon, or the polygons of a file (polygon_file.h). Throws InputError.
 void readSources(const Entry& entry, SceneFile& scene);
 
+// The sections [composite] and [surroundings] of a scene file.
+
+// Both throw InputError.
+void readComposite(const Section& section, SceneFile& scene);
+SurroundingsEntry readSurroundings(const Section& section);
+
 }  // namespace chromeball
