@@ -6,7 +6,6 @@
 #include <fstream>
 #include <numeric>
 
-#include "base/byte_planes.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "image/io/exr_rows.h"
@@ -159,23 +158,42 @@ TEST(Checksum, ChangesWithEveryByte) {
   }
 }
 
-TEST(BytePlanes, RoundTripAnyItems) {
-  for (const size_t size : {1u, 4u, 8u, 13u, 104u})
-    for (const size_t count : {0u, 1u, 2u, 255u, 256u, 257u, 1000u}) {
-      std::vector<char> items(size * count), read(items.size(), 'x');
-      for (size_t i = 0; i < items.size(); ++i)  // every third byte is the same in all items
-        items[i] = char(i % size % 3 == 0 ? i % size : hash(i));
-      std::vector<char> packed{'a', 'b'};
-      packPlanes(items.data(), count, size, packed);
-      if (count == 1000 && size == 104) {
-        EXPECT_LT(packed.size(), items.size() * 7 / 10);
+// Lists of items of any size come back, and such as differ in few bytes take less room.
+TEST(ExrState, PacksItems) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "state.exr";
+  OutputImage output{
+      .layers = {{"", "RGB", Image(1, 1, 3)}}, .metadata = {}, .placement = {}, .state = {}};
+  const auto test = [&]<size_t kSize>(std::integral_constant<size_t, kSize>) {
+    using Sized = std::array<uint8_t, kSize>;
+    for (const size_t count : {0u, 1u, 2u, 255u, 256u, 257u, 1000u, 70000u}) {
+      std::vector<Sized> items(count), read(count);
+      for (size_t i = 0; i < count; ++i)  // every third byte is the same in all items
+        for (size_t b = 0; b < kSize; ++b)
+          items[i][b] = uint8_t(b % 3 == 0 ? b : hash(i * kSize + b));
+      const auto archive = [](std::vector<Sized>& list) {
+        return [&list](Archive& a) {
+          a.blocks(1, [&](Archive& block, size_t) {
+            uint32_t mark = 7;
+            block.items(std::span(list)), block(mark), block.items(std::span(list));
+            block.check(mark == 7);
+          });
+        };
+      };
+      output.state = archive(items);
+      writeExr(path, output);
+      readExrState(path, archive(read));
+      EXPECT_EQ(read, items) << kSize << " x " << count;
+      if (count == 70000 && kSize == 104) {
+        EXPECT_LT(double(std::filesystem::file_size(path)), 0.7 * 2 * double(count * kSize));
       }
-      const std::span<const char> planes = std::span(packed).subspan(2);
-      EXPECT_EQ(unpackPlanes(planes, count, size, read.data()), planes.size());
-      EXPECT_EQ(read, items);
-      for (size_t length = 0; length < std::min<size_t>(planes.size(), 40); ++length)
-        EXPECT_FALSE(unpackPlanes(planes.first(length), count, size, read.data()));
     }
+  };
+  test(std::integral_constant<size_t, 1>());
+  test(std::integral_constant<size_t, 8>());
+  test(std::integral_constant<size_t, 13>());
+  test(std::integral_constant<size_t, 104>());
+  test(std::integral_constant<size_t, 300>());
 }
 
 // A file may claim to hold more than it does.

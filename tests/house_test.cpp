@@ -93,6 +93,8 @@ const std::map<std::string, std::vector<std::string>> kIncludedBy = {
     {"webp/", {"renderer/image/io/decode_image.cpp"}},
     {"draco/", {"renderer/scene/gltf/draco.cpp"}},
     {"meshoptimizer.h", {"renderer/scene/gltf/meshopt.cpp"}},
+    {"blosc.h", {"renderer/image/io/exr_state.cpp"}},
+    {"xxhash.h", {"renderer/base/hash.cpp"}},
     {"tiny_gltf.h", {"renderer/scene/gltf/"}},
     {"toml++/", {"renderer/front/toml_section.h"}},
     {"nlohmann/json.hpp", {"renderer/base/json.h"}},

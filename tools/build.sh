@@ -20,6 +20,7 @@ done
 
 packages=(build-essential cmake pkg-config
   libembree-dev libpng-dev libjpeg-dev libopenexr-dev libopenimageio-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libwebp-dev
+  libblosc-dev libxxhash-dev
   libtomlplusplus-dev libcli11-dev libcpp-httplib-dev libglm-dev libtbb-dev libfmt-dev
   nlohmann-json3-dev libeigen3-dev libboost-dev libgtest-dev libbenchmark-dev)
 

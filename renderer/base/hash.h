@@ -24,9 +24,7 @@ uint64_t hash(uint64_t first, uint64_t second, Rest... rest) {
 // The top 24 bits as a float in [0, 1).
 inline float toUnit(uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
 
-// A sum that tells damage to many bytes; as fast as memory, and no protection from intent.
-
-// Any change of bytes within one aligned word of eight changes it.
+// Tells damage, and one description from others (XXH3); no protection from intent.
 uint64_t checksum(std::span<const char> bytes);
 
 }  // namespace chromeball

@@ -5,7 +5,7 @@
 # that only the renderer's own sources use, or have vector types, which need the renderer's
 # instruction set.
 cmake_minimum_required(VERSION 3.22)
-set(private_libraries "<(embree|OpenImageIO/|OpenEXR/|png\\.h|jpeglib\\.h|tiny_gltf|toml\\+\\+/|nlohmann/|webp/|draco/|meshoptimizer|Eigen/|boost/|tbb/)")
+set(private_libraries "<(embree|OpenImageIO/|OpenEXR/|png\\.h|jpeglib\\.h|tiny_gltf|toml\\+\\+/|nlohmann/|webp/|draco/|meshoptimizer|Eigen/|boost/|tbb/|blosc|xxhash)")
 
 file(GLOB open RELATIVE ${SOURCE} ${SOURCE}/api/*.h)
 set(headers)

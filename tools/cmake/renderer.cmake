@@ -37,7 +37,7 @@ set(chromeball_private_libraries
   # tinygltf before Draco: Debian's libdraco exports a tinygltf of another version, whose functions
   # would take the place of those that our calls were compiled for.
   TBB::tbb embree OpenEXR::OpenEXR PNG::PNG JPEG::JPEG PkgConfig::WebP
-  TinyGLTF::TinyGLTF PkgConfig::Draco meshoptimizer::meshoptimizer
+  TinyGLTF::TinyGLTF PkgConfig::Draco meshoptimizer::meshoptimizer PkgConfig::Blosc
   # Headers only: a static library's consumers need not find them.
   $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:Boost::headers>
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/exr_state.h"
 
+#include <blosc.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -10,7 +11,6 @@
 #include <fstream>
 
 #include "base/archive.h"
-#include "base/byte_planes.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -53,9 +53,14 @@ class BlockReader : public MemoryReader {
 
  protected:
   void itemBytes(void* data, size_t count, size_t size) override {
-    const std::optional<size_t> taken = unpackPlanes(rest(), count, size, static_cast<char*>(data));
-    check(taken.has_value());
-    skip(*taken);
+    if (count * size == 0) return;
+    check(rest().size() >= BLOSC_MIN_HEADER_LENGTH);
+    size_t bytes = 0, packed = 0, ofBlock = 0;
+    blosc_cbuffer_sizes(rest().data(), &bytes, &packed, &ofBlock);
+    check(packed <= rest().size() && blosc_cbuffer_validate(rest().data(), packed, &bytes) == 0 &&
+          bytes == count * size &&
+          blosc_decompress_ctx(rest().data(), data, bytes, 1) == int(bytes));
+    skip(packed);
   }
 };
 
@@ -141,10 +146,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Items are numbers with few bytes that differ: the counts and weights of pixels, the low bytes of
+// sums of few samples. Blosc sorts them by byte.
 class BlockWriter : public MemoryWriter {
  protected:
   void itemBytes(void* data, size_t count, size_t size) override {
-    packPlanes(static_cast<const char*>(data), count, size, contents);
+    const size_t bytes = count * size, begin = contents.size();
+    if (bytes == 0) return;
+    contents.resize(begin + bytes + BLOSC_MAX_OVERHEAD);
+    const int packed = blosc_compress_ctx(1, BLOSC_SHUFFLE, size, bytes, data, &contents[begin],
+                                          bytes + BLOSC_MAX_OVERHEAD, "lz4", 0, 1);
+    if (packed <= 0) throw std::length_error("a block of a state has 2 GB");
+    contents.resize(begin + size_t(packed));
   }
 };
 
