@@ -217,6 +217,40 @@ TEST(Coincident, TouchingGlassAndWaterRefractAsOneBoundary) {
   }
 }
 
+void addBox(Scene& scene, const Material& material, const vec3& low, const vec3& high) {
+  const int body = addMaterial(scene, material);
+  const vec3 size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+  for (const auto& [corner, a, b] : {std::tuple(low, z, y),
+                                     {high, -y, -z},
+                                     {low, x, z},
+                                     {high, -z, -x},
+                                     {low, y, x},
+                                     {high, -x, -y}})
+    addQuad(scene, body, corner, a, b);
+}
+
+// Bodies that overlap and share some of their outer faces: a path that one of these reflects at
+// such a place stays in the medium where it was, and does not walk to and fro for ever.
+TEST(Coincident, OverlappingBodiesWithFlushFacesAreAFurnace) {
+  const vec3 low(-1), high(1);
+  const std::pair<vec3, vec3> others[] = {{{0, -1, -1}, {2, 1, 1}},      // half of it
+                                          {{-1, -1, -1}, {1, 0.4f, 1}},  // its lower part
+                                          {low, high}};
+  for (const auto& [first, second] : {std::pair(1.5f, 1.33f), {1.33f, 1.5f}, {1.5f, 1.5f}})
+    for (const auto& [from, to] : others) {
+      Scene scene;
+      addBox(scene, bodyOf(first, Rgb(0)), low, high);
+      addBox(scene, bodyOf(second, Rgb(0)), from, to);
+      RenderSettings settings = smallRender(16, 16, 16, 50);
+      settings.maxTransmissionDepth = 1000;
+      const Image image =
+          renderScene(scene, Camera::lookAt({0.3f, 1.5f, 4}, {0, 0, 0}, {0, 1, 0}, 40),
+                      Probe(constantProbe({16, 8}, Rgb(1))), "importance", settings)
+              .film.mean();
+      for (const float texel : image.texels) EXPECT_NEAR(texel, 1, 1e-4f);
+    }
+}
+
 // Any number of surfaces, of which a bounded number is met.
 TEST(Coincident, ManySheetsAreAFurnace) {
   for (const int count : {2, 5, 8, 9, 40}) {

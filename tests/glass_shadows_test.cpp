@@ -55,6 +55,23 @@ Camera underTheSlab() { return Camera::lookAt({0.5f, 0.4f, 0}, {0, 0, 0}, {0, 1,
 
 double schlick(double cosine) { return 0.04 + 0.96 * std::pow(1 - cosine, 5); }
 
+// What the camera and mirrors are not to see lights a floor behind glass all the same.
+TEST(GlassShadows, InvisibleSunsAndAmbientLampsShineThroughGlass) {
+  std::array<Image, 2> images;
+  for (const bool isVisible : {false, true}) {
+    Scene scene = floorAndSlab(0.5f, 1.25f);
+    for (Material& m : scene.materials) m.straightShadows = false;
+    scene.suns = {
+        {Sun{.direction = {0, 1, 0.2}, .irradiance = Rgb(1), .angle = 30}, isVisible, "sun"}};
+    scene.ambient = {{Rgb(0.5f), isVisible, "sky"}};
+    images[isVisible] = renderScene(scene, underTheSlab(), Probe(constantProbe({4, 2}, Rgb(0))),
+                                    "importance", smallRender(4, 4, 256, 4))
+                            .film.mean();
+  }
+  EXPECT_EQ(images[0].texels, images[1].texels);
+  EXPECT_GT(meanColor(images[0]).x, 0.2f * kAlbedo);
+}
+
 TEST(GlassShadows, ASlabTransmitsByFresnelAndBeersLaw) {
   for (const double angle : {0.0, 0.9}) {
     Scene scene = floorAndSlab(0.5f, 1.25f);

@@ -51,8 +51,8 @@ TEST(Lamps, PointsAndSpotsFollowTheInverseSquareLaw) {
   const Lamp spot = lampOf(
       "type = 'spot'\nposition = [0, 2, 0]\ndirection = [0, -3, 0]\nintensity = 8\n"
       "inner_angle = 20\nouter_angle = 30\nrange = 4");
-  EXPECT_NEAR(spot.punctual->cosOuter, std::cos(kPiD / 6), 1e-6);
-  EXPECT_NEAR(spot.punctual->cosInner, std::cos(kPiD / 9), 1e-6);
+  EXPECT_NEAR(spot.punctual->outerCone, 1 - std::cos(kPiD / 6), 1e-6);
+  EXPECT_NEAR(spot.punctual->innerCone, 1 - std::cos(kPiD / 9), 1e-6);
   EXPECT_NEAR(floorRadiance(spot).x, 0.5 / kPiD * 8 / 4 * (1 - 1.0 / 16), 1e-3);
   const Lamp away =
       lampOf("type = 'spot'\nposition = [0, 2, 0]\ndirection = [0, 1, 0]\nintensity = 8");

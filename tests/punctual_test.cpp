@@ -57,8 +57,8 @@ TEST(Punctual, DirectionalIsTheSameEverywhere) {
 TEST(Punctual, SpotFadesBetweenItsCones) {
   PunctualLight light = lampAt({0, 0, 0}, Rgb(1));
   light.kind = Kind::Spot;
-  light.cosInner = 0.9f;
-  light.cosOuter = 0.5f;
+  light.innerCone = 0.1f;
+  light.outerCone = 0.5f;
   const auto at = [&](float cosine) {  // at unit distance, off the axis -Z
     return incidentLight(light, {std::sqrt(1 - cosine * cosine), 0, -cosine}).irradiance.x;
   };
@@ -68,9 +68,38 @@ TEST(Punctual, SpotFadesBetweenItsCones) {
   EXPECT_NEAR(at(0.6f), 0.0625, 1e-5);
   EXPECT_EQ(at(0.49f), 0);
   EXPECT_EQ(at(-1), 0);
-  light.cosInner = light.cosOuter;  // a sharp edge
+  light.innerCone = light.outerCone;  // a sharp edge
   EXPECT_EQ(at(0.499f), 0);
-  EXPECT_NEAR(at(0.502f), 1, 1e-5);
+  EXPECT_NEAR(at(0.501f), 1, 1e-5);
+}
+
+// The flux of a spot of 1 W, and its intensity on the axis, however narrow its cones are. Over
+// rings of the angle a from the axis: 2 pi sin a da.
+TEST(Punctual, NarrowSpotsHaveTheirPower) {
+  for (const auto& [inner, outer] : {std::pair(0.0, 30.0),
+                                     {0.0, 2.0},
+                                     {0.0, 0.1},
+                                     {1.0, 1.0},
+                                     {0.5, 0.51},
+                                     {0.0, 0.01},
+                                     {30.0, 30.0},
+                                     {89.0, 90.0}}) {
+    PunctualLight light = lampAt({0, 0, 0}, Rgb(1));
+    light.kind = Kind::Spot;
+    light.innerCone = coneOf(glm::radians(inner)), light.outerCone = coneOf(glm::radians(outer));
+    light.intensity = Rgb(light.intensityOfOneWatt());
+    const auto at = [&](double angle) {
+      return double(
+          incidentLight(light, {float(std::sin(angle)), 0, -float(std::cos(angle))}).irradiance.x);
+    };
+    EXPECT_FLOAT_EQ(float(at(0)), light.intensity.x);
+    constexpr int kRings = 20000;
+    const double step = glm::radians(outer) * 1.1 / kRings;
+    double flux = 0;
+    for (int i = 0; i < kRings; ++i)
+      flux += at((i + 0.5) * step) * 2 * kPiD * std::sin((i + 0.5) * step) * step;
+    EXPECT_NEAR(flux, 1, 2e-3) << inner << " " << outer;
+  }
 }
 
 // A Lambertian plane y = 0.
@@ -216,8 +245,8 @@ TEST(GltfLights, AreTransformedByTheirNodes) {
   EXPECT_NEAR(glm::distance(lights[0].direction, vec3(0, 1, 0)), 0, 1e-6);
   EXPECT_NEAR(glm::distance(683.0f * lights[0].intensity, Rgb(3, 1.5f, 0)), 0, 1e-5);
   EXPECT_EQ(lights[0].range, 7);
-  EXPECT_NEAR(lights[0].cosInner, std::cos(0.1), 1e-6);
-  EXPECT_NEAR(lights[0].cosOuter, std::cos(0.2), 1e-6);
+  EXPECT_NEAR(lights[0].innerCone, 1 - std::cos(0.1), 1e-8);
+  EXPECT_NEAR(lights[0].outerCone, 1 - std::cos(0.2), 1e-8);
   EXPECT_EQ(lights[1].kind, Kind::Directional);
   EXPECT_NEAR(683 * lights[1].intensity.x, 1, 1e-6);
   EXPECT_TRUE(w.warnings.empty());

@@ -69,8 +69,8 @@ PartJson partOf(const Lamp& lamp) {
                         numbersIn(light->intensity),
                         numbersIn(light->direction),
                         light->range,
-                        light->cosInner,
-                        light->cosOuter};
+                        light->innerCone,
+                        light->outerCone};
   if (const auto& disc = lamp.disc)
     part["disc"] = {numbersIn(disc->direction), disc->radius, numbersIn(disc->radiance)};
   if (const auto& sun = lamp.sun)

@@ -72,7 +72,7 @@ void hashCamera(const Camera& c, SceneHasher& h) {
 void hashLights(const Scene& scene, SceneHasher& h) {
   for (const PunctualLight& light : scene.lights)
     h.numbers(light.kind, light.intensity, light.position, light.direction, light.range,
-              light.cosInner, light.cosOuter);
+              light.innerCone, light.outerCone);
   for (const SunLamp& lamp : scene.suns)
     h.numbers(lamp.sun.direction, lamp.sun.irradiance, lamp.sun.angle, lamp.isVisible);
   for (const AmbientLamp& lamp : scene.ambient) h.numbers(lamp.radiance, lamp.isVisible);

@@ -60,8 +60,8 @@ PunctualLight readPunctual(const Section& light, bool isSpot) {
     const Entry outerEntry = light["outer_angle"], innerEntry = light["inner_angle"];
     const double outer = outerEntry ? outerEntry.number() : 45;
     const double inner = innerEntry ? innerEntry.number({.min = 0, .max = outer}) : 0;
-    lamp.cosOuter = float(std::cos(outer * kPiD / 180));
-    lamp.cosInner = float(std::cos(inner * kPiD / 180));
+    lamp.outerCone = coneOf(glm::radians(outer));
+    lamp.innerCone = coneOf(glm::radians(inner));
   }
   if (const Entry e = light["range"]) lamp.range = float(e.number());
   lamp.intensity = readStrength(light, "intensity", lamp.intensityOfOneWatt());

@@ -9,14 +9,13 @@ float rangeAttenuation(const PunctualLight& light, float distance) {
   return std::clamp(1 - fraction * fraction * fraction * fraction, 0.0f, 1.0f);
 }
 
-// Minimum of cosInner - cosOuter, as in the extension's example code: avoids division by 0.
-constexpr float kMinConeWidth = 0.001f;
-
 float coneAttenuation(const PunctualLight& light, const vec3& direction, const vec3& wi) {
-  const float width = std::max(kMinConeWidth, light.cosInner - light.cosOuter);
-  const float fraction = (glm::dot(direction, -wi) - light.cosOuter) / width;
-  const float clamped = std::clamp(fraction, 0.0f, 1.0f);
-  return clamped * clamped;
+  const vec3 chord = direction + wi;
+  const float cone = glm::dot(chord, chord) / 2;  // 1 - cos, without cancellation near the axis
+  if (cone <= light.innerCone) return 1;
+  if (cone >= light.outerCone) return 0;
+  const float fraction = (light.outerCone - cone) / (light.outerCone - light.innerCone);
+  return fraction * fraction;
 }
 
 }  // namespace

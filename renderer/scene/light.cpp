@@ -6,10 +6,10 @@
 namespace chromeball {
 
 // A spot's falloff is 1 within the inner cone and ((cos - cosOuter) / (cosInner - cosOuter))^2
-// between the cones.
+// between the cones, whose cosines are 1 - innerCone and 1 - outerCone.
 float PunctualLight::intensityOfOneWatt() const {
   if (kind == Kind::Point) return 1 / (4 * kPi);
-  return 1 / (2 * kPi * ((1 - cosInner) + (cosInner - cosOuter) / 3));
+  return 1 / (2 * kPi * (innerCone + (outerCone - innerCone) / 3));
 }
 
 LampPose PunctualLight::poseAt(float time) const {

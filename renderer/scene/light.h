@@ -2,6 +2,7 @@
 // Lights that are not emissive surfaces of a model, and their units in files.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,12 +33,13 @@ struct PunctualLight {
   Kind kind = Kind::Point;
   Rgb intensity{
       1};  // W/sr; for a directional light W/m^2, its irradiance on a surface that faces it
-  vec3 position{0};                            // metres
-  vec3 direction{0, 0, -1};                    // unit, from the light into the scene
-  float range = INFINITY;                      // metres; beyond it the light is 0
-  float cosInner = 1, cosOuter = 0.70710678f;  // a spot's cones: full light inside, none outside
-  std::string name = {};                       // of its node
-  int node = -1;                               // index into Scene::nodeNames; -1: none
+  vec3 position{0};          // metres
+  vec3 direction{0, 0, -1};  // unit, from the light into the scene
+  float range = INFINITY;    // metres; beyond it the light is 0
+  // A spot's cones, as coneOf() its angles: full light inside, none outside.
+  float innerCone = 0, outerCone = 0.29289322f;
+  std::string name = {};  // of its node
+  int node = -1;          // index into Scene::nodeNames; -1: none
   std::shared_ptr<const std::vector<LampPose>> motion = nullptr;  // its keys; null: stands still
 
   LampPose poseAt(float time) const;
@@ -47,6 +49,12 @@ struct PunctualLight {
   // W/sr of a lamp with a power of 1 W: 1 / (integral of its falloff over all directions).
   float intensityOfOneWatt() const;
 };
+
+// 1 - cos of an angle in radians, in which narrow cones keep their digits.
+inline float coneOf(double angle) {
+  const double sine = std::sin(angle / 2);
+  return float(2 * sine * sine);
+}
 
 // A disc that emits uniform radiance from one side.
 struct DiscLamp {

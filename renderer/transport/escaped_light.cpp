@@ -18,14 +18,15 @@ Rgb PathTracer::escapedRadiance(const PathState& state, PathContext& context) co
   return weighted(state, lighting_.escaped(state.from, direction), context) + distant;
 }
 
-// From World::sources, which light narrow lobes too: only the camera and delta lobes, which light
-// samples cannot serve, see background().
+// From World::sources, which light narrow lobes too: only the camera, and what it sees by delta
+// lobes, sees background(). After a bounce that is not delta, a delta lobe (glass before the light)
+// finds all of the light, which light samples cannot serve.
 Rgb PathTracer::distantRadiance(const PathState& state, PathContext& context) const {
   const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
   Rgb sum(0);
   for (const size_t i : world_.sources.distant) {
     const LightSource& source = *world_.sources.all[i];
-    if (state.isDelta) {
+    if (!state.scattered) {
       sum += state.throughput * source.background(origin, direction);
       if (context.groups) [[unlikely]]
         context.groups->addBackground(source, i, origin, direction, state.throughput);
@@ -33,7 +34,8 @@ Rgb PathTracer::distantRadiance(const PathState& state, PathContext& context) co
     }
     const LightSource::Escaped found = source.escaped(state.from, direction);
     if (isBlack(found.radiance)) continue;
-    const Rgb weight = state.throughput * bsdfSampleWeight(settings_.mis, state.pdf, found.pdf);
+    const Rgb weight = state.throughput *
+                       (state.isDelta ? 1 : bsdfSampleWeight(settings_.mis, state.pdf, found.pdf));
     sum += weight * found.radiance;
     if (context.groups) [[unlikely]]
       context.groups->addEscaped(source, i, state.from, direction, weight);

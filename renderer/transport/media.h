@@ -46,9 +46,10 @@ class Media {
   // leaves the body, a reflected ray changes nothing.
   Media& follow(const Surface& surface, const vec3& wi);
 
- private:
+  // The last that was entered of this material, as an index into bodies(); -1: none.
   int find(const Material* body) const;
 
+ private:
   int count_ = 0;
   std::array<const Material*, 4> bodies_;
 };

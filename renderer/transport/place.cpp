@@ -27,7 +27,8 @@ class PlaceCollector {
         !isFromBehind(scene_, instance, hit.triangle, state_.ray.direction, state_.ray.time);
     if (ignores(state_, material, front)) return;
     ++count_;
-    if (material.transmits()) return addLayer({hit, !material.isBody() ? 1 : front ? 0 : 2});
+    if (material.transmits())
+      return addLayer({hit, !material.isBody() ? kSheet : front ? kEntered : kLeft});
     // Of several opaque surfaces the path meets a front, and of fronts one that emits.
     const int rank = !front ? 2 : material.emits() ? 0 : 1;
     keepFirst(passesFromBehind(state_, material, front) ? oneWay_ : opaque_, {hit, rank});
@@ -51,11 +52,15 @@ class PlaceCollector {
       place.hits[0] = alone->hit;
       return place;
     }
-    // Of one rank, in an order that is the reverse for the other direction.
-    const bool ascends = glm::dot(axis, vec3(0.8147f, 0.9058f, 0.1270f)) > 0;
     const auto layers = std::span(layers_).first(size_t(layerCount_));
-    if (!ascends) std::ranges::reverse(layers);
-    std::ranges::stable_sort(layers, {}, &Layer::rank);
+    const bool ascends = glm::dot(axis, vec3(0.8147f, 0.9058f, 0.1270f)) > 0;
+    std::ranges::sort(layers, [&](const Layer& a, const Layer& b) {
+      if (a.rank != b.rank) return a.rank < b.rank;
+      const int entered = enteredAt(a.hit), other = enteredAt(b.hit);
+      if (a.rank == kLeft && entered != other) return entered > other;
+      const bool isAscending = a.rank == kEntered || (a.rank == kSheet && ascends);
+      return isAscending ? orderOf(a.hit) < orderOf(b.hit) : orderOf(b.hit) < orderOf(a.hit);
+    });
     for (const Layer& layer : layers) place.hits[size_t(place.count++)] = layer.hit;
     return place;
   }
@@ -65,6 +70,11 @@ class PlaceCollector {
     Hit hit;
     int rank;  // before those with higher ones
   };
+  static constexpr int kEntered = 0, kSheet = 1, kLeft = 2;  // ranks of surfaces that transmit
+
+  int enteredAt(const Hit& hit) const {
+    return state_.media.find(&scene_.materials[size_t(scene_.instances[hit.instance].material)]);
+  }
 
   static void keepFirst(std::optional<Layer>& first, const Layer& layer) {
     if (!first ||

@@ -11,7 +11,9 @@ namespace chromeball {
 
 // The surfaces at the end of a path's ray, if there are several, in the order in which the path
 // crosses them: bodies that it enters, then sheets, then bodies that it leaves, so that touching
-// bodies refract as one boundary. Seen from the other side the order is the reverse. No path
+// bodies refract as one boundary. Bodies are entered in the order of the scene, and left in the
+// reverse of the order in which they were entered: a path that the last of them reflects is in the
+// medium again from which it came. Sheets have the reverse order from the other side. No path
 // crosses an opaque surface: it is alone. Those beyond kMost are ignored.
 struct Place {
   static constexpr int kMost = 8;

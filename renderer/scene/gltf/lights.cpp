@@ -64,8 +64,8 @@ PunctualLight readLight(const GltfFile& file, const Value& source, LightUnits un
   const Value& spot = memberOf(source, "spot");
   const std::string at = where + ".spot";
   const double outer = number(file, spot, "outerConeAngle", kPiD / 4, 0, kPiD / 2 + 1e-6, at);
-  light.cosOuter = float(std::cos(outer));
-  light.cosInner = float(std::cos(number(file, spot, "innerConeAngle", 0, 0, outer, at)));
+  light.outerCone = coneOf(outer);
+  light.innerCone = coneOf(number(file, spot, "innerConeAngle", 0, 0, outer, at));
   return light;
 }
 
