@@ -2,17 +2,13 @@
 #include "session/session.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <exception>
 #include <limits>
-#include <set>
 #include <thread>
 
 #include "base/error.h"
-#include "base/json.h"
 #include "base/progress.h"
-#include "description/describe.h"
+#include "description/differences.h"
 #include "render/live_result.h"
 #include "render/render_state.h"
 #include "scene/gltf/model_cache.h"
@@ -23,53 +19,6 @@
 
 namespace chromeball {
 namespace {
-
-// What decides the light, and what the picture's place and size, under the names of describe().
-// These and the settings of the integrator need no new scene.
-constexpr std::array kOfProbe = {"probe", "probe-mapping", "probe-rotation", "probe-scale",
-                                 "probe-in-memory"};
-constexpr std::array kOfLighting = {"strategy",    "mis",        "sun-angle",
-                                    "show-lights", "integrator", "aov"};
-constexpr std::array kOfCamera = {"camera", "camera-file", "scene-camera", "lens",
-                                  "optics", "orbit",       "size",         "crop"};
-constexpr std::array kOfPaths = {"noise-limit",
-                                 "time-limit",
-                                 "shard",
-                                 "adaptive",
-                                 "guide",
-                                 "max-depth",
-                                 "max-transmission-depth",
-                                 "max-diffuse-depth",
-                                 "max-specular-depth",
-                                 "ao",
-                                 "reflection-occlusion",
-                                 "ao-distance",
-                                 "bent",
-                                 "irradiance-cache",
-                                 "seed",
-                                 "transparent",
-                                 "clamp",
-                                 "denoise"};
-
-template <size_t N>
-bool has(const std::array<const char*, N>& names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
-// What is in memory differs if it is another object: hashes of a large scene would take as long as
-// a frame.
-std::set<std::string> differences(RenderDescription a, RenderDescription b) {
-  std::set<std::string> names;
-  if (a.scene != b.scene) names.insert("scene-in-memory");
-  if (a.probe.map != b.probe.map) names.insert("probe-in-memory");
-  for (RenderDescription* d : {&a, &b}) d->scene.reset(), d->probe.map.reset();
-  const nlohmann::ordered_json was = describe(a), is = describe(b);
-  for (const auto* one : {&was, &is})
-    for (const auto& [name, ignored] : one->items())
-      if (was.value(name, nlohmann::ordered_json()) != is.value(name, nlohmann::ordered_json()))
-        names.insert(name);
-  return names;
-}
 
 // Shows the result to those who watch; a session has no checkpoints.
 class WatchedRender : public RenderControl {
@@ -277,17 +226,11 @@ void Session::Implementation::load() {
 }
 
 void Session::Implementation::changeWhatDiffers() {
-  const std::set<std::string> names = differences(*given_, description_);
-  const auto differs = [&](const auto& of) {
-    return std::ranges::any_of(names, [&](const std::string& name) { return has(of, name); });
-  };
-  const bool keepsScene = std::ranges::all_of(names, [](const std::string& name) {
-    return has(kOfProbe, name) || has(kOfLighting, name) || has(kOfCamera, name) ||
-           has(kOfPaths, name);
-  });
+  const Differences differences(*given_, description_);
   // The models' own environment is the scene's, and moves to the probe.
   const auto hasProbe = [](const RenderDescription& d) { return d.probe.file || d.probe.map; };
-  if (!keepsScene || (differs(kOfProbe) && !(hasProbe(*given_) && hasProbe(description_))))
+  if (!differences.keepScene() ||
+      (differences.inProbe() && !(hasProbe(*given_) && hasProbe(description_))))
     return load();
   FrameChange change;
   try {
@@ -300,7 +243,7 @@ void Session::Implementation::changeWhatDiffers() {
   if (change.geometry) return load();
   work_.loadedProbe = change.lighting;
   const bool hasOwnStrategy = given_->lighting.make || description_.lighting.make;
-  lightingIsStale_ |= change.lighting || differs(kOfLighting) || hasOwnStrategy;
+  lightingIsStale_ |= change.lighting || differences.inLighting() || hasOwnStrategy;
   given_ = description_;
   if (!lightingIsStale_) return;
   work_.preparedLighting = true;

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "description/differences.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/json.h"
+#include "description/describe.h"
+
+namespace chromeball {
+namespace {
+
+// What decides the light, and the place and size of the picture, under the names of describe().
+// These and the settings of the integrator need no new scene.
+constexpr std::array kOfProbe = {"probe", "probe-mapping", "probe-rotation", "probe-scale",
+                                 "probe-in-memory"};
+constexpr std::array kOfLighting = {"strategy",    "mis",        "sun-angle",
+                                    "show-lights", "integrator", "aov"};
+constexpr std::array kOfCamera = {"camera", "camera-file", "scene-camera", "lens",
+                                  "optics", "orbit",       "size",         "crop"};
+constexpr std::array kOfPaths = {"noise-limit",
+                                 "time-limit",
+                                 "shard",
+                                 "adaptive",
+                                 "guide",
+                                 "max-depth",
+                                 "max-transmission-depth",
+                                 "max-diffuse-depth",
+                                 "max-specular-depth",
+                                 "ao",
+                                 "reflection-occlusion",
+                                 "ao-distance",
+                                 "bent",
+                                 "irradiance-cache",
+                                 "seed",
+                                 "transparent",
+                                 "clamp",
+                                 "denoise"};
+
+template <size_t N>
+bool has(const std::array<const char*, N>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+template <size_t N>
+bool hasAny(const std::array<const char*, N>& names, const std::set<std::string>& of) {
+  return std::ranges::any_of(of, [&](const std::string& name) { return has(names, name); });
+}
+
+}  // namespace
+
+Differences::Differences(const RenderDescription& a, const RenderDescription& b) {
+  if (a.scene != b.scene) names_.insert("scene-in-memory");
+  if (a.probe.map != b.probe.map) names_.insert("probe-in-memory");
+  const auto fromFiles = [](RenderDescription d) {
+    d.scene.reset(), d.probe.map.reset();
+    return describe(d);
+  };
+  const nlohmann::ordered_json was = fromFiles(a), is = fromFiles(b);
+  for (const auto* one : {&was, &is})
+    for (const auto& [name, ignored] : one->items())
+      if (was.value(name, nlohmann::ordered_json()) != is.value(name, nlohmann::ordered_json()))
+        names_.insert(name);
+}
+
+bool Differences::keepScene() const {
+  return std::ranges::all_of(names_, [](const std::string& name) {
+    return has(kOfProbe, name) || has(kOfLighting, name) || has(kOfCamera, name) ||
+           has(kOfPaths, name);
+  });
+}
+
+bool Differences::inProbe() const { return hasAny(kOfProbe, names_); }
+bool Differences::inLighting() const { return hasAny(kOfLighting, names_); }
+
+}  // namespace chromeball
