@@ -47,7 +47,7 @@ struct CameraDescription {
 struct ProbeDescription {
   std::optional<std::string> file;   // nullopt: the models' own environment, or none
   std::shared_ptr<const Image> map;  // in place of a file: lat-long, radiance; null: none
-  std::string mapping = "auto";
+  std::string mapping = "auto";      // of the file
   Rotation rotation;
   glm::dvec3 scale{1};
   bool isScaledByPlate = false;  // so that the ground of a composite looks as in the plate
@@ -58,7 +58,7 @@ struct ProbeDescription {
 enum class LightFrom { All, Suns, Rest };
 
 struct LightingDescription {
-  std::string strategy;
+  std::string strategy = "auto";  // strategyNames()
   LightFrom from = LightFrom::All;
   double lamps = 1;                // factor on the models' punctual lights
   std::optional<double> sunAngle;  // StrategyOptions::sunAngle
@@ -96,7 +96,7 @@ struct RunDescription {
   std::optional<double> writeEvery;  // seconds
   bool resumes = false;
   bool isOfFrames = false;  // others follow, of the same files
-  bool isWatched = false;   // snapshots are taken (session/session.h)
+  bool isWatched = false;   // snapshots may be taken; a Session sets it
 };
 
 struct OutputDescription {
@@ -122,8 +122,8 @@ struct RenderDescription {
   LightingDescription lighting;
   std::optional<CompositeDescription> composite;
 
-  RenderSettings settings;        // of the integrator; the size is that of LoadedScene::description
-  std::optional<ImageSize> size;  // nullopt: determined by the model's camera
+  RenderSettings settings;        // of the integrator; its width and height are set by loadScene()
+  std::optional<ImageSize> size;  // nullopt: the height of `settings`, as wide as the model's camera
   SingleSided singleSided = SingleSided::Camera;
   bool straightGlassShadows = false;  // passShadowsStraight()
 

@@ -99,6 +99,7 @@ void replaceProbe(const RenderDescription& job, LoadedScene& loaded, FrameChange
     replaceFile(earlier.file, probe.file, loaded.files);
     loaded.loadedProbe = std::move(read);
     loaded.probe = std::move(replaced);
+    change.probe = true;
   } else {
     loaded.probe.turnTo(probe.rotation);
     if (loaded.sources) loaded.sources->remainder.turnTo(probe.rotation);

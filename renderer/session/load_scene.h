@@ -48,6 +48,7 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared =
 struct FrameChange {
   bool geometry = false;  // or lights of the scene
   bool lighting = false;  // the probe, or its surroundings
+  bool probe = false;     // another one, not only a turned one
 };
 
 // Replaces the camera, the probe if it has turned or is another file, and, where a model is

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <exception>
 #include <limits>
+#include <stdexcept>
 #include <thread>
 
 #include "base/error.h"
@@ -12,6 +13,7 @@
 #include "render/live_result.h"
 #include "render/render_state.h"
 #include "scene/gltf/model_cache.h"
+#include "session/job_report.h"
 #include "session/live_image.h"
 #include "session/run_job.h"
 #include "session/scene_lighting.h"
@@ -138,6 +140,7 @@ void Session::Implementation::take(RenderDescription description) {
 }
 
 const SessionImage& Session::Implementation::wait() {
+  if (!control_) throw std::logic_error("Session::wait() without start()");
   if (thread_.joinable()) thread_.join();
   if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
   if (!result_) throw Interrupted("the session was cancelled before it rendered");
@@ -189,6 +192,7 @@ void Session::Implementation::render() {
   JobResult result =
       renderJob(*loaded_, prepared_, progress, stop_, hasTwoPasses ? nullptr : control_.get());
   if (!result.render.interrupted) progress(1);
+  result.image.metadata = imageMetadata(*loaded_, result, result.render, result.seconds);
   say(result.messages);
   const double samples = meanCount(result.render.film.sampleCounts());
   if (samples == 0) return;
@@ -241,7 +245,7 @@ void Session::Implementation::changeWhatDiffers() {
     throw;
   }
   if (change.geometry) return load();
-  work_.loadedProbe = change.lighting;
+  work_.loadedProbe = change.probe;
   const bool hasOwnStrategy = given_->lighting.make || description_.lighting.make;
   lightingIsStale_ |= change.lighting || differences.inLighting() || hasOwnStrategy;
   given_ = description_;

@@ -66,7 +66,9 @@ class Session {
 
   bool isRunning() const;
   double fraction() const;  // of the render's work that is done; NaN if unknown
-  // Waits for the end of the render. Throws Interrupted if it was cancelled before it rendered.
+  // Waits for the end of the render. Throws Interrupted if it was cancelled before it rendered, and
+  // std::logic_error without start(). The image is valid until the next start(), update() or the
+  // destructor; its metadata are those of the command's .exr.
   const SessionImage& wait();
   // What there is, also while it renders: not denoised, without the layer `variance`, and with the
   // noise after the last pass over the image. Null before the first samples, and for a reference of
@@ -77,8 +79,12 @@ class Session {
 
   // What the last start() did, after wait().
   struct Work {
-    bool loadedScene = false, loadedProbe = false, preparedLighting = false;
-    int meshBuilds = 0;  // structures over meshes, by all starts so far
+    bool loadedScene = false;  // read, and structures built over it
+    bool loadedProbe = false;  // read or converted; one that has only turned is not
+    bool preparedLighting = false;
+    // Structures over meshes that instances transform (the others are in the scene's own), built by
+    // all starts so far: a mesh that moved, or came again in another scene, is not built again.
+    int meshBuilds = 0;
   };
   Work work() const;
 
