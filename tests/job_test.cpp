@@ -10,9 +10,11 @@
 #include <climits>
 #include <fstream>
 #include <functional>
+#include <set>
 
 #include "base/error.h"
 #include "description/describe.h"
+#include "description/differences.h"
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"
@@ -169,6 +171,32 @@ TEST(Job, WhatAProgramChangesIsInHeaderAndIdentity) {
       {"ground", [](RenderDescription& j) { j.composite->entry.groundReflectance = Rgb(0.3f); }},
   };
   for (const auto& [name, change] : composite) expectFound(folder / "composite.toml", name, change);
+}
+
+// A setting in none of the lists of differences.cpp loads the scene again, which is right only for
+// what the scene is made of.
+TEST(Job, OnlyWhatTheSceneIsMadeOfLoadsItAgain) {
+  const TemporaryFolder folder;
+  writeRichScene(folder);
+  std::set<std::string> loadAgain;
+  for (const char* scene : {"plain.toml", "composite.toml"}) {
+    RenderDescription d = planJob(openScene(folder / scene));
+    d.settings.noiseLimit = 0.1, d.settings.timeLimit = 1;
+    d.settings.cacheError = 0.2f, d.settings.clamp = 7, d.settings.regularize = true;
+    d.camera.shutter = Shutter{0.25, 24, 4, 0};
+    d.camera.lens = Lens{0.1f, 3};
+    d.lighting.sunAngle = 1;
+    d.scene = std::make_shared<const Scene>();
+    d.probe.map = std::make_shared<const Image>(2, 1, 3);
+    const nlohmann::ordered_json all = describe(d);
+    for (const auto& [name, ignored] : all.items())
+      if (!Differences::keepsScene(name)) loadAgain.insert(name);
+  }
+  const std::set<std::string> ofTheScene = {
+      "composite",       "fps",          "glass-shadows", "light-from",    "light-units",
+      "lights",          "local-scene",  "models",        "regularize",    "scene",
+      "scene-in-memory", "scene-lights", "shutter",       "shutter-steps", "single-sided"};
+  EXPECT_EQ(loadAgain, ofTheScene);
 }
 
 // Also where the scene is far from the world's origin. Only the image's size may be the models'.

@@ -213,6 +213,21 @@ TEST(Session, TheImageHasItsMetadata) {
   EXPECT_EQ(metadataNumber(metadata(), "max-depth"), 4);
 }
 
+// Of a description that has not begun to render there is no image, also after another one's.
+TEST(Session, HasNoSnapshotBeforeItBegins) {
+  RenderDescription d = stageDescription(Stage());
+  Session session(d);
+  EXPECT_FALSE(session.snapshot());
+  session.start();
+  session.wait();
+  EXPECT_TRUE(session.snapshot());
+  session.update(d);
+  EXPECT_FALSE(session.snapshot());
+  session.start();
+  session.wait();
+  EXPECT_TRUE(session.snapshot());
+}
+
 TEST(Session, CancelsAndBeginsAnew) {
   RenderDescription d = stageDescription(Stage(), kMaxSamples);
   Session session(d);

@@ -42,6 +42,18 @@ void addDisc(Scene& scene, int material, float height, float radius) {
   addMesh(scene, material, std::move(mesh));
 }
 
+// Parts of renders store the numbers of layers: 0 to 12, in this order.
+TEST(SurfaceLayers, NumbersAreThoseOfEarlierParts) {
+  const char* names[] = {"albedo",  "normal",      "depth",     "alpha",   "variance",
+                         "samples", "material",    "node",      "invalid", "denoise",
+                         "ao",      "bent_normal", "irradiance"};
+  ASSERT_EQ(allAovs().size(), std::size(names));
+  for (size_t i = 0; i < std::size(names); ++i) {
+    EXPECT_EQ(allAovs()[i].aov, Aov(i));
+    EXPECT_EQ(allAovs()[i].name, std::string(names[i]));
+  }
+}
+
 // ao = h^2 / (h^2 + R^2) below the middle of a disc.
 TEST(SurfaceLayers, AmbientOcclusionBelowADisc) {
   for (const float radius : {0.5f, 1.0f, 2.0f}) {

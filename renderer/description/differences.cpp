@@ -63,11 +63,11 @@ Differences::Differences(const RenderDescription& a, const RenderDescription& b)
         names_.insert(name);
 }
 
-bool Differences::keepScene() const {
-  return std::ranges::all_of(names_, [](const std::string& name) {
-    return has(kOfProbe, name) || has(kOfLighting, name) || has(kOfCamera, name) ||
-           has(kOfPaths, name);
-  });
+bool Differences::keepScene() const { return std::ranges::all_of(names_, keepsScene); }
+
+bool Differences::keepsScene(const std::string& name) {
+  return has(kOfProbe, name) || has(kOfLighting, name) || has(kOfCamera, name) ||
+         has(kOfPaths, name);
 }
 
 bool Differences::inProbe() const { return hasAny(kOfProbe, names_); }

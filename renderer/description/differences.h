@@ -15,8 +15,10 @@ class Differences {
  public:
   Differences(const RenderDescription& a, const RenderDescription& b);
 
-  // Nothing of the models and of what else is in the scene.
+  // Nothing of the models and of what else is in the scene; a name that is in none of the lists of
+  // differences.cpp loads everything again.
   bool keepScene() const;
+  static bool keepsScene(const std::string& name);
   bool inProbe() const;
   bool inLighting() const;  // the way of sampling the light
 

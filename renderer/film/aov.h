@@ -16,7 +16,7 @@ namespace chromeball {
 // The first surface that a camera ray meets.
 struct FirstHit {
   bool hit = false;
-  float depth = 0;  // metres along the camera's axis (planar depth, not the ray's length)
+  float depth = 0;  // metres along the path; PixelRenderer makes it that along the camera's axis
   Rgb albedo{0};    // base colour
   vec3 normal{0};   // unit shading normal, world space
   int material = -1, node = -1;
@@ -47,6 +47,7 @@ struct FirstHit {
 //   bent_normal     unit, the mean direction of the visible sky; 0 if there is none
 //   irradiance      W/m^2, of the light on the first surface; mean over the samples with a hit
 //   denoise         what a denoiser reads: several layers (film/layer_film.h)
+// Parts of renders store their numbers: a new one is the last.
 enum class Aov {
   Albedo,
   Normal,

@@ -36,7 +36,7 @@ struct LightRequest {
 struct MadeLights {
   Constellation lights;
   std::optional<Rgb> ambient;       // radiance from all directions, where it was fitted
-  std::optional<double> meanError;  // of a fit, in percent (fit/light_error.h)
+  std::optional<double> meanError;  // of a fit, in percent (fit/light_descent.h)
 };
 
 struct LightingMethod {

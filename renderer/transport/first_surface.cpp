@@ -13,6 +13,17 @@ Bsdf FirstSurface::bsdf(const PathTracer& tracer, const PathState& state) const 
               tracer.mirrorAlpha());
 }
 
+FirstHit firstHitAt(const Instance& instance, const Surface& surface, const MaterialPoint& material,
+                    float length) {
+  FirstHit first;
+  first.hit = true;
+  first.depth = length;
+  first.albedo = first.seen = material.baseColor;
+  first.normal = surface.normal;
+  first.material = instance.material, first.node = instance.node;
+  return first;
+}
+
 std::optional<FirstSurface> firstSurface(const PathTracer& tracer, PathState& state,
                                          const std::optional<Hit>& hit, PathContext& context) {
   const auto visible = tracer.skipHiddenBacks(state, hit, context);
@@ -24,14 +35,7 @@ std::optional<FirstSurface> firstSurface(const PathTracer& tracer, PathState& st
   FirstSurface found(scene, instance,
                      surfaceAt(scene, instance, visible->triangle, visible->barycentric,
                                -state.ray.direction, crossSection, state.ray.time));
-  if (state.first) {
-    FirstHit& first = *state.first;
-    first.hit = true;
-    first.depth = state.length;
-    first.albedo = first.seen = found.material.baseColor;
-    first.normal = found.surface.normal;
-    first.material = instance.material, first.node = instance.node;
-  }
+  if (state.first) *state.first = firstHitAt(instance, found.surface, found.material, state.length);
   return found;
 }
 

@@ -17,6 +17,10 @@ struct FirstSurface {
   Bsdf bsdf(const PathTracer& tracer, const PathState& state) const;
 };
 
+// What the layers of the first hit show of a surface. `length`: of the path to it.
+FirstHit firstHitAt(const Instance& instance, const Surface& surface, const MaterialPoint& material,
+                    float length);
+
 // The visible surface that the camera path `state` meets first, `hit` being the closest hit of its
 // ray; also fills state.length and state.first. Nullopt if there is none: vertex() then adds the
 // background.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "trace/accel.h"
+#include "transport/first_surface.h"
 #include "transport/light_groups.h"
 #include "transport/pass_through.h"
 #include "transport/path_settings.h"
@@ -244,9 +245,7 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
 
   MaterialPoint material = materialAt(scene, surface);
   if (isFirst)
-    *state.first = {
-        true,          state.length,       material.baseColor, surface.normal, instance.material,
-        instance.node, material.baseColor, std::nullopt};
+    *state.first = firstHitAt(instance, surface, material, state.length);
   else if (state.first) [[unlikely]]
     SeenFeature::noteSurface(state, material);
   if (ends) return passAtLimit(scene, state, instance, surface);
