@@ -2,6 +2,7 @@
 #include "shading/bsdf_tables.h"
 
 #include <algorithm>
+#include <mutex>
 #include <type_traits>
 
 #include "base/parallel.h"
@@ -198,6 +199,22 @@ bool needsSheen(const Material& m) { return m.extended && !isBlack(m.extended->s
 bool needsGlass(const Material& m) { return m.isBody() && m.roughness > 0; }
 bool isBody(const Material& m) { return m.isBody(); }
 
+// A constant, of which the process has one copy from its first use on. It is made without the lock,
+// for which no loop of another thread shall wait: of two threads that come at once, both make it.
+template <class Table>
+std::shared_ptr<const Table> constantTable() {
+  static std::mutex holding;
+  static std::shared_ptr<const Table> constant;
+  {
+    const std::scoped_lock lock(holding);
+    if (constant) return constant;
+  }
+  auto made = std::make_shared<const Table>();
+  const std::scoped_lock lock(holding);
+  if (!constant) constant = std::move(made);
+  return constant;
+}
+
 }  // namespace
 
 BsdfTables::BsdfTables(std::span<const Material> materials, bool widened) {
@@ -206,8 +223,9 @@ BsdfTables::BsdfTables(std::span<const Material> materials, bool widened) {
 
 void BsdfTables::complete(std::span<const Material> materials, bool widened) {
   const auto make = [&](auto& table, bool (*needs)(const Material&)) {
-    using Table = typename std::remove_reference_t<decltype(table)>::element_type;
-    if (!table && std::ranges::any_of(materials, needs)) table = std::make_shared<Table>();
+    using Table =
+        std::remove_const_t<typename std::remove_reference_t<decltype(table)>::element_type>;
+    if (!table && std::ranges::any_of(materials, needs)) table = constantTable<Table>();
   };
   make(energy, needsEnergy);
   make(anisotropic, needsAnisotropic);

@@ -169,8 +169,8 @@ class GlassTable {
   GridTable<GlassAlbedo, kEtas, kRoughnesses, kAngles> grid_;
 };
 
-// Those tables that the materials need, and no others: none for Lambertian materials. Copies share
-// the tables, each of which takes up to 0.3 s of one core. Must outlive the BSDFs.
+// Those tables that the materials need, and no others: none for Lambertian materials. Each takes up
+// to 0.3 s of one core, once in a process: all scenes share them. Must outlive the BSDFs.
 struct BsdfTables {
   // `widened`: smooth materials may become rough (transport/path_settings.h).
   explicit BsdfTables(std::span<const Material> materials, bool widened = false);
