@@ -118,7 +118,7 @@ struct PathContext {
         std::isfinite(record.integrand / record.density))
       records->lights.push_back(record);
   }
-  // At the end of a path.
+  // Adds the record of a guided bounce at the end of its path.
   void addRecord(const GuidedBounce& bounce, const Rgb& radiance) const {
     if (!records || bounce.record.lobesPdf == 0) return;
     BounceRecord record = bounce.record;

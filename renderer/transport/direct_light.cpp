@@ -196,7 +196,7 @@ Rgb DirectLight::ofScene(size_t source, const Vertex& vertex, PathContext& conte
     const BsdfValue broad = vertex.bsdf.evaluate(light.wi);
     const BsdfValue narrow = narrowLobes(vertex.bsdf.bsdf(), light.wi);
     if (isBlack(broad.fCos) && isBlack(narrow.fCos)) continue;
-    // To a point that is offset, too, so that neither surface shadows itself.
+    // The end point is offset too, so that neither surface shadows itself.
     Ray ray = rayFrom(vertex.surface, light.wi, light.distance);
     if (isSurface) {
       ray.tMax = glm::length(light.end.position - ray.origin);

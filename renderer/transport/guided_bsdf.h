@@ -19,7 +19,7 @@ class GuidedBsdf {
 
   const Bsdf& bsdf() const { return bsdf_; }
 
-  // Of broad lobes, with the pdf of the mixture.
+  // The value of the broad lobes, with the pdf of the mixture.
   BsdfValue evaluate(const vec3& wi) const {
     BsdfValue value = bsdf_.evaluate(wi);
     if (lobes_) value.pdf = mixed(value.pdf, lobes_->pdf(position_, wi));

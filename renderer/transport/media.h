@@ -26,7 +26,7 @@ class Media {
            find(&material) < 0;
   }
 
-  // Of the current medium, 1/m.
+  // The attenuation coefficient of the current medium, 1/m.
   Rgb attenuation() const {
     return count_ == 0 ? Rgb(0) : bodies_[size_t(count_ - 1)]->extended->attenuation;
   }

@@ -8,8 +8,8 @@
 
 namespace chromeball {
 
-// Whether the path ignores the surface: the back of a single-sided one, seen by the camera or in a
-// mirror, or that of a body which the path has not entered.
+// Whether the path ignores the surface: the back of a single-sided surface, seen by the camera or
+// in a mirror, or the back of a body that the path has not entered.
 inline bool ignores(const PathState& state, const Material& material, bool frontFace) {
   return (state.isDelta && !frontFace && material.hidesBack()) ||
          state.media.ignores(material, frontFace);
@@ -43,7 +43,7 @@ inline bool goesStraight(const PathState& state, const Material& material) {
 // rays from there pass the surface too.
 inline void passStraight(PathState& state, const Surface& surface) {
   state.leave(surface, state.ray.direction);
-  if (!surface.material->isBody()) ++state.straight;  // that of a body is a transmission
+  if (!surface.material->isBody()) ++state.straight;  // passing a body's surface is a transmission
 }
 
 // For a path without bounces left: continues straight through the surface, since light from behind

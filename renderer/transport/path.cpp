@@ -12,8 +12,8 @@
 namespace chromeball {
 namespace {
 
-// Whether the medium at the start of a shadow ray to the probe matters, so that it cannot wait for
-// those of other paths.
+// Whether the medium at the start of a shadow ray to the probe matters: if so, the ray cannot wait
+// for the shadow rays of other paths.
 bool needsMedium(const Accel& accel, const PathState& state, const Surface& surface) {
   return state.place ||
          (accel.needsMedia() && (state.media.inside() || surface.material->isBody()));

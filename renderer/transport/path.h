@@ -105,8 +105,8 @@ class PathTracer {
   std::optional<Hit> skipHiddenBacks(PathState& state, std::optional<Hit> hit,
                                      PathContext& context) const;
 
-  // Adds what a ray that hits nothing finds; not for narrow lobes and the camera. `escaped`: of the
-  // probe.
+  // Adds the light that a ray finds if it hits nothing; not for narrow lobes and the camera.
+  // `escaped`: the probe's radiance and pdf.
   void addEscaped(PathState& state, const LightSource::Escaped& escaped,
                   PathContext& context) const;
 
@@ -117,7 +117,7 @@ class PathTracer {
   float mirrorAlpha() const { return mirrorAlpha_; }
 
  private:
-  // `weight`: of the path that goes on, if that is chosen at random.
+  // `weight`: output, the weight of the path that continues, if that is chosen at random.
   std::optional<Hit> metAt(PathState& state, const Hit& hit, const Surface& surface, float& weight,
                            PathContext& context) const;
   bool sharesPlace(const Hit& hit) const {

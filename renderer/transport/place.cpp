@@ -29,7 +29,8 @@ class PlaceCollector {
     ++count_;
     if (material.transmits())
       return addLayer({hit, !material.isBody() ? kSheet : front ? kEntered : kLeft});
-    // Of several opaque surfaces the path meets a front, and of fronts one that emits.
+    // Among several opaque surfaces the path meets a front face, and among front faces one that
+    // emits.
     const int rank = !front ? 2 : material.emits() ? 0 : 1;
     keepFirst(passesFromBehind(state_, material, front) ? oneWay_ : opaque_, {hit, rank});
   }

@@ -118,7 +118,7 @@ class PhotonTracer {
            out);
   }
 
-  // From a point on an emissive triangle, in a cosine-distributed direction.
+  // Traces a path from a point on an emissive triangle, in a cosine-distributed direction.
   void traceFromLamp(Random random, Traced& out) const {
     const Emitters::Point lamp =
         world_.sources.emitters->choose(double(random.bits()) * 0x1p-32, random.get1());
