@@ -80,7 +80,7 @@ class DiscAreas : public LightAreas {
 // Area lights that are the regions of a lat-long map.
 
 // Each light has the energy of its region, the sum of radiance x solid angle over the texels; its
-// direction is the energy's centroid. Solid angles are exact: those of rectangles of texels. Black
+// direction is the energy's centroid. Solid angles are exact: sums over rectangles of texels. Black
 // regions make no lights.
 class RegionAreas : public LightAreas {
  public:

@@ -83,7 +83,7 @@ class ShownLights : public LightSource {
                     std::span<Rgb> radiances) const override {
     strategy_->splitEscaped(point, wi, radiances);
   }
-  // The last group is what the camera and mirrors see.
+  // The last group holds what the camera and mirrors see.
   void splitBackground(const vec3& origin, const vec3& wi,
                        std::span<Rgb> radiances) const override {
     radiances.back() += background(origin, wi);

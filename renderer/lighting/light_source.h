@@ -114,9 +114,9 @@ class LightSource {
   virtual bool unbiased() const { return true; }
 
   // The names of the parts of the light that light groups tell apart (transport/light_groups.h).
-  // Surfaces in the scene have none: their groups are those of their nodes.
+  // Surfaces in the scene have none: they belong to their nodes' groups.
   virtual std::vector<std::string> groups() const { return {"probe"}; }
-  // Adds the radiance of escaped(), or of background(), to that of each group: one element of
+  // Splits the radiance of escaped(), or of background(), by group and adds it: one element of
   // `radiances` per group.
   virtual void splitEscaped(const LightPoint& point, const vec3& wi,
                             std::span<Rgb> radiances) const {

@@ -41,7 +41,7 @@ class PolygonLights : public LightSource {
   void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
 
  private:
-  // Of a polygon, which is not black, from two numbers in [0, 1).
+  // A sample of a polygon that is not black, from two numbers in [0, 1).
   struct Chosen {
     size_t light;
     vec3 wi;

@@ -17,8 +17,8 @@ struct SceneSources {
   explicit SceneSources(const Scene& scene);
 
   std::vector<std::unique_ptr<const LightSource>> all;
-  std::vector<size_t> distant;         // of these: those that rays find which hit nothing
-  const Emitters* emitters = nullptr;  // of these: photons start there; null where nothing emits
+  std::vector<size_t> distant;         // indices of those that rays find if they hit nothing
+  const Emitters* emitters = nullptr;  // among `all`: photons start there; null if nothing emits
 };
 
 // Suns that a scene has besides its probe (HDRI book, sections 9.3.5 and 9.6.1).
@@ -72,7 +72,7 @@ class AmbientLight : public LightSource {
 // first part can.
 class CombinedLight : public LightSource {
  public:
-  // The first part is that of the probe.
+  // The first part is the probe's.
   explicit CombinedLight(std::vector<std::unique_ptr<LightSource>> parts);
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
