@@ -45,9 +45,9 @@ struct RepairReport {
 };
 
 // Repairs the first three channels in place. A negative or -infinite channel becomes 0. A texel
-// with a NaN becomes the mean of those among its eight neighbours that have none (x wraps if
-// `wrapX`), or black if there are none. A +infinite channel becomes the largest finite channel of
-// the image: it marks the brightest source, which an average of the neighbours would lose.
+// with a NaN becomes the mean of those of its eight neighbours that have none (x wraps if `wrapX`),
+// or black if there are none. A +infinite channel becomes the largest finite channel of the image:
+// it marks the brightest source, which an average of the neighbours would lose.
 RepairReport repair(Image& image, bool wrapX);
 
 // "3 NaN, 1 infinite, 20 negative texels, the first at (5, 7)".

@@ -19,9 +19,10 @@ namespace chromeball {
 struct Plateau {
   size_t texels = 0;
   double solidAngle = 0;  // steradians
-  // At least 8 texels and twice the solid angle of the sun's disc, but not above 90% of the sphere;
-  // and fewer texels from 0.2% to 1% below the maximum than within 0.2%: around a smooth maximum
-  // there are four times as many. A lamp of constant radiance looks clipped as well.
+  // True if the maximum covers at least 8 texels and twice the solid angle of the sun's disc, but
+  // not above 90% of the sphere; and if there are fewer texels from 0.2% to 1% below the maximum
+  // than within 0.2%: around a smooth maximum there are four times as many. A lamp of constant
+  // radiance looks clipped as well.
   bool looksClipped = false;
 };
 Plateau plateau(const Image& latLong);
@@ -32,8 +33,8 @@ Plateau plateau(const Image& latLong);
 double robustRange(const Image& latLong);
 
 // The fraction of the light, of red, green and blue together, that is lost if the map is exposed so
-// that its mean luminance over the sphere is 0.18, and each channel is clipped at 1. It is that of
-// the irradiance too, in the mean over all normals. 0 for a black map.
+// that its mean luminance over the sphere is 0.18, and each channel is clipped at 1. The same
+// fraction of irradiance is lost, in the mean over all normals. 0 for a black map.
 double lostIfClippedAtWhite(const Image& latLong);
 
 struct BrightestTexels {

@@ -37,7 +37,7 @@ Columns columnsOf(const SphericalPolygon& polygon, const ImageSize& size) {
   return columns.end - columns.begin < size.width ? columns : Columns{0, size.width};
 }
 
-// The texels of a lat-long map of which the polygon covers a part, from 4 x 4 points of each.
+// The texels of a lat-long map that the polygon covers in part or whole, by 4 x 4 points of each.
 std::vector<CoveredTexel> coverageOf(const SphericalPolygon& polygon, const ImageSize& size) {
   constexpr int kPoints = 4;
   const double centre = directionToUv(Mapping::LatLong, polygon.axis()).y * size.height;
@@ -167,8 +167,8 @@ PolygonExtraction extractPolygons(const Image& latLong,
 
 namespace {
 
-// Between positions in the file and in the map, for a map that was turned by 180 degrees on
-// loading.
+// Converts between positions in the file and in the map, for a map that was turned by 180 degrees
+// on loading.
 glm::dvec2 turned(const glm::dvec2& uv, const LoadedProbe& probe) {
   if (!probe.turned) return uv;
   return {uv.x < 0.5 ? uv.x + 0.5 : uv.x - 0.5, uv.y};

@@ -15,8 +15,8 @@ namespace chromeball {
 // about 1e-3 of the irradiance and 1e-2 of the radiance (tests/prefiltered_probe_test.cpp).
 class PrefilteredProbe {
  public:
-  // A table for a narrower lobe would need many texels, each of which takes long; a sample of the
-  // lobe has little noise.
+  // A table for a narrower lobe would need many texels, each slow to compute; a sample of the lobe
+  // has little noise.
   static constexpr float kLeastRoughness = 0.2f;
 
   // `roughnesses`: from kLeastRoughness to 1, of the tables to make; others are interpolated. A
@@ -36,7 +36,7 @@ class PrefilteredProbe {
   };
 
   const Probe& probe_;
-  Probe diffuse_;              // irradiance / pi, which is also that of roughness 1
+  Probe diffuse_;              // irradiance / pi, also the table for roughness 1
   std::vector<Level> levels_;  // by increasing roughness
 };
 

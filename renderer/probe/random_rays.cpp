@@ -8,7 +8,8 @@
 namespace chromeball {
 namespace {
 
-// Of 1, the luminance L and L^2: the same arcs for all, so that a constant probe has no variance.
+// Integrals of 1, the luminance L and L^2 over the same arcs, so that a constant probe has no
+// variance.
 using RaysRow = RowIntegrals<dvec3, 5>;
 
 // Rows of coarser maps are divided (probe/irradiance.cpp).

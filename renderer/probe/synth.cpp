@@ -118,8 +118,9 @@ dvec3 skyIrradiance(const SkyRadiance& radiance) {
 }
 
 // How much of the texels of a lat-long map a disc covers: a grid of samples in each texel, about 16
-// across the disc and no more than 1024 across a texel. Of each line of samples the disc has one
-// interval, whose ends are computed, so that the time is that of the texels that it covers.
+// across the disc and no more than 1024 across a texel. The disc covers one interval of each line
+// of samples, whose ends are computed, so that the time is proportional to the number of texels
+// that it covers.
 class DiscSamples {
  public:
   DiscSamples(const dvec3& direction, double radius, const ImageSize& size)
@@ -159,7 +160,7 @@ class DiscSamples {
   }
 
  private:
-  // Of samples along a line, numbered from u = 0 on; empty if last < first.
+  // An interval of samples along a line, numbered from u = 0 on; empty if last < first.
   struct Interval {
     int64_t first, last;
   };

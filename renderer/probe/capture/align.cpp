@@ -126,13 +126,13 @@ std::optional<dvec3> commonAxis(const std::vector<Candidate>& candidates) {
 }
 
 void checkVaries(const Image& logMap, std::string_view name) {
-  constexpr float kLeast = 1e-4f;  // of the logarithm: of the radiance as a fraction
+  constexpr float kLeast = 1e-4f;  // a range of logarithms, so a fraction of the radiance
   const auto [least, greatest] = std::ranges::minmax(logMap.texels);
   if (!(greatest - least > kLeast))
     throwInput("{}: has the same radiance in all directions, so no rotation can be found", name);
 }
 
-// Doubled from the coarsest height to that of the coarser map.
+// The heights of the levels: doubled from the coarsest up to the height of the coarser map.
 std::vector<int> heights(const Image& a, const Image& b) {
   const int finest = std::clamp(std::min(a.height, b.height), kCoarsest, kFinest);
   std::vector<int> all;
@@ -192,7 +192,7 @@ Percentiles percentilesShown(const Image& green) {
   return {double(dark) / double(texels.size()), double(shown) / double(texels.size())};
 }
 
-// Of half the size: means of 2 x 2 pixels.
+// The image at half its size: means of 2 x 2 pixels.
 Image halved(const Image& image) {
   Image half(image.width / 2, image.height / 2, 1);
   for (int y = 0; y < half.height; ++y)

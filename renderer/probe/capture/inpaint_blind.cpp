@@ -5,7 +5,7 @@
 namespace chromeball {
 namespace {
 
-// A map of which some texels are known; the others are to be found.
+// A map with some known texels; the others are to be found.
 struct PartialMap {
   int width, height;
   std::vector<dvec3> radiance;

@@ -93,7 +93,8 @@ struct Correlation {
   }
 };
 
-// Of `reference` and `view` after a turn by `shift` columns: towards the left of the map.
+// The correlation of `reference` and `view` after a turn by `shift` columns, towards the left of
+// the map.
 Correlation correlation(const LuminanceMap& reference, const LuminanceMap& view, int shift) {
   Correlation sum;
   for (int y = 0; y < kSize.height; ++y)

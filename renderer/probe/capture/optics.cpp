@@ -44,7 +44,7 @@ double smoothstep(double x) {
   return t * t * (3 - 2 * t);
 }
 
-// At `radius` from the centre, in the direction of (x, y).
+// The point of the disc at `radius` from the centre, in the direction of (x, y).
 dvec2 onDisc(const dvec3& direction, double radius) {
   const double length = std::hypot(direction.x, direction.y);
   return length > 0 ? radius / length * dvec2(direction) : dvec2(radius, 0);

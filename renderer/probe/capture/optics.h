@@ -46,7 +46,7 @@ using glm::dvec3;
 struct DiscPoint {
   dvec2 position;     // x right, y up; the circle has radius 1
   double weight;      // how well it is shown, above 0 to 1: for a mean over several photographs
-  dvec3 reflectance;  // the photograph's radiance over that of the direction
+  dvec3 reflectance;  // the photograph's radiance / the direction's
 };
 
 // Directions are unit, in the camera's frame: x right, y up, z backwards, towards the camera.

@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// From levels, 0 to 1 = white, to exposure: radiance x exposure time x transmission, in a unit in
+// Maps levels, 0 to 1 = white, to exposure: radiance x exposure time x transmission, in a unit in
 // which sRGB's white is 1.
 class ResponseCurve {
  public:

@@ -29,8 +29,8 @@ class PixelMean {
         b_(0.5 * std::max(std::fabs(normal.y), kLeast)),
         blur_(blur) {}
 
-  // Of the pixel with its centre at `distance`. The Gaussian is a sum over nodes 0.75 standard
-  // deviations apart.
+  // The functions at the pixel with its centre at `distance`. The Gaussian is a sum over nodes 0.75
+  // standard deviations apart.
   RimFunctions at(double distance) const {
     RimFunctions mean;
     if (blur_ == 0) {

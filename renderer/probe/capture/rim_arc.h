@@ -70,7 +70,7 @@ class RimEquations {
     }
   }
 
-  // Of the normal equations, by Cholesky's factors, in place; false if they are singular.
+  // Solves the normal equations by Cholesky factors, in place; false if they are singular.
   bool solve() {
     constexpr double kSingular = 1e-9;
     for (size_t i = 0; i < unknowns_; ++i) {

@@ -173,7 +173,8 @@ Image resized(const Image& latLong, int height) {
   return convert(latLong, Mapping::LatLong, Mapping::LatLong, {2 * height, height});
 }
 
-// Of one channel, over the sphere; of what is lit if it is 0; 1 if all is black.
+// The median of one channel over the sphere; over its lit part if that median is 0; 1 if all is
+// black.
 float medianOf(const Image& map, int channel) {
   struct Texel {
     float radiance;

@@ -100,7 +100,7 @@ BallSamples sampleBall(const DiffuseBall& ball, const Image& photograph, const I
 
 namespace {
 
-// Of a white ball in the light of the probe, at each sample.
+// The radiance of a white ball in the light of the probe, at each sample.
 std::vector<dvec3> radianceOf(const Image& probe, const BallSamples& ball) {
   std::vector<vec3> normals;
   normals.reserve(ball.samples.size());
