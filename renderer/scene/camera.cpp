@@ -106,7 +106,7 @@ Beam beamOf(const Camera& camera, int height, double samples) {
   const double halfHeight =
       camera.orthographic ? camera.halfHeight : std::tan(0.5 * double(camera.fov));
   const double side = 2 * halfHeight / height;
-  // Of the overlaps 1, 2, 4 and 8, this one has the smallest error for 16 samples of a
+  // Among the overlaps 1, 2, 4 and 8, this one has the smallest error for 16 samples of a
   // checkerboard.
   constexpr double kOverlap = 4;
   const float fraction = float(side * side * std::min(kOverlap / samples, 1.0));

@@ -65,7 +65,7 @@ class Section {
   uint16_t at(int x, int z) const { return fronts_[size_t(z * kSide + x)]; }
 
   void add(const Corners& corners, double height) {
-    std::array<dvec2, 2> ends;  // of the segment in which the triangle crosses the plane
+    std::array<dvec2, 2> ends;  // of the segment where the triangle crosses the plane
     int count = 0;
     for (size_t k = 0; k < 3 && count < 2; ++k) {
       const dvec3 &a = corners[k], &b = corners[(k + 1) % 3];
@@ -105,7 +105,7 @@ dvec2 direction(int i) {
 // negative in directions where no front face is seen.
 using Panorama = std::array<double, kDirections>;
 
-// Whether size and number of instances are those of a furnished room.
+// Whether the size and the number of instances fit a furnished room.
 bool isFurnishedRoom(const Bounds& box, const std::vector<int>& instances) {
   constexpr double kMinHeight = 2, kMaxHeight = 10, kMinWidth = 2.5;  // metres
   constexpr size_t kMinInstances = 5;

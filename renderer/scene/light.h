@@ -50,7 +50,7 @@ struct PunctualLight {
   float intensityOfOneWatt() const;
 };
 
-// 1 - cos of an angle in radians, in which narrow cones keep their digits.
+// 1 - cos of an angle in radians, so that narrow cones keep their digits.
 inline float coneOf(double angle) {
   const double sine = std::sin(angle / 2);
   return float(2 * sine * sine);
@@ -82,7 +82,7 @@ struct AmbientLamp {
 // Exactly one of `punctual`, `disc`, `sun` and `ambient` is set.
 struct Lamp {
   std::string name;  // of its node
-  // In the world, metres; of a punctual light or disc, whose own is not used.
+  // The position of a punctual light or disc in the world, metres; their own one is not used.
   glm::dvec3 position{0};
   std::optional<PunctualLight> punctual;
   std::optional<DiscLamp> disc;

@@ -72,8 +72,8 @@ dvec3 anyPerpendicular(const dvec3& n) {
   return glm::normalize(glm::cross(n, axis));
 }
 
-// Transforms the normals and gives them unit length; those of no direction get that of the
-// triangles around them.
+// Transforms the normals and gives them unit length; a normal without a direction gets the one of
+// the triangles around it.
 void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
   std::vector<uint32_t> bad;
   std::mutex adding;

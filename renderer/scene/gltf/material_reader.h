@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts glTF materials, textures, samplers and images to those of the scene.
+// Converts glTF materials, textures, samplers and images to the scene's.
 #pragma once
 
 #include <map>

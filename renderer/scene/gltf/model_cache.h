@@ -28,7 +28,7 @@ struct TexelCache {
   std::shared_ptr<TexelFile> file;  // null: all are in memory; else it caches the rest of `memory`
 
   std::map<std::pair<std::string, int>, std::shared_ptr<TexelGrid>> grids;  // by file and image
-  // By image, and by Texture::srgb and Texture::weightedByAlpha.
+  // Keyed by image, and by Texture::srgb and Texture::weightedByAlpha.
   std::map<std::tuple<const TexelGrid*, bool, bool>, MipChain> chains;
 };
 
@@ -83,7 +83,7 @@ struct ModelCache {
   MeshCache meshes;
 
   bool keepsFiles = false;  // open and decoded, with their buffers
-  // By path, animation and variant, which change the file's nodes and materials.
+  // Keyed by path, animation and variant, which change the file's nodes and materials.
   std::map<std::string, std::shared_ptr<GltfFile>> files;
 };
 

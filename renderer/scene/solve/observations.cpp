@@ -22,8 +22,8 @@ struct Row {
   std::string location;
 };
 
-// Without spaces and quotation marks around it; messages quote it, so that other control characters
-// become question marks.
+// The field without surrounding spaces and quotation marks; messages quote it, so control
+// characters become question marks.
 std::string cleaned(std::string_view field) {
   const auto isOuter = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
   while (!field.empty() && isOuter(field.front())) field.remove_prefix(1);

@@ -69,7 +69,7 @@ struct ModelEdge {
 // The borders of a model's surfaces, and the edges at which they bend by more than 30 degrees.
 std::vector<ModelEdge> creases(const Scene& scene);
 
-// What the camera sees of the edges, also of those that surfaces hide.
+// Draws the edges as the camera sees them, including edges that surfaces hide.
 void drawEdges(std::span<const ModelEdge> edges, const Camera& camera, const Rgb& color,
                Image& picture);
 

@@ -36,8 +36,8 @@ class LineProblem {
 
   int unknowns() const { return findsFocalLength_ ? 4 : 3; }
 
-  // The direction in which the picture of a point at the line's middle moves, if the point moves
-  // along the axis; of any length.
+  // The direction in which the image of a point at the line's middle moves if the point moves along
+  // the axis; of any length.
   static glm::dvec2 flow(const LineView& view, const CentredLine& line);
 
   // Signed distances of the second ends. The unknowns: rotation about the camera's axes, logarithm
@@ -106,8 +106,8 @@ void checkCount(const std::vector<ObservedLine>& lines, const std::string& file)
         file, counts[0], counts[1], counts[2]);
 }
 
-// Turned by half turns about the scene's axes so that lines run along the positive axes: the
-// distances do not tell.
+// The rotation, turned by half turns about the scene's axes so that lines run along the positive
+// axes: the distances do not determine that.
 dmat3 directed(const LineView& view, const std::vector<ObservedLine>& observed,
                const std::vector<CentredLine>& lines, const std::string& file) {
   std::array<std::optional<size_t>, 3> first;  // line of each axis
@@ -152,7 +152,7 @@ FoundByLines search(const std::vector<CentredLine>& lines, const CameraKnowledge
 
 CameraErrors errorsOf(const FoundByLines& found, const CameraKnowledge& known, size_t count,
                       const std::string& file) {
-  constexpr double kLeastPivot = 1e-13, kExtreme = 500;  // kExtreme: of f / h, either way
+  constexpr double kLeastPivot = 1e-13, kExtreme = 500;  // kExtreme: f / h or h / f
   const double f = found.state.focalLength, h = 0.5 * known.size.height;
   const SymmetricEigen eigen = eigenOfSymmetric(found.normal);
   if (!(eigen.values.minCoeff() > kLeastPivot * eigen.values.maxCoeff()) ||

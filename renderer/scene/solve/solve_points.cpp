@@ -76,7 +76,8 @@ bool isAsGood(const FoundByPoints& found, const FoundByPoints& best, size_t poin
   return found.squares <= (1 + kRounding) * best.squares + kRounding * kRounding * double(points);
 }
 
-// Minima of different rotations, the best first; of equal ones, those in front of the camera.
+// Minima of different rotations, the best first; among equal ones, those with the points in front
+// of the camera.
 std::vector<FoundByPoints> search(const std::vector<CentredPoint>& points, const dvec3& normal,
                                   const CameraKnowledge& known) {
   constexpr int kStarts = 128, kFirstSteps = 10, kMostSteps = 300;
@@ -195,7 +196,7 @@ CameraErrors errorsOf(const FoundByPoints& found, const PointProblem& problem,
 }
 
 // How far, in pixels, the points are from where a camera without perspective sees them, to first
-// order. Of a plane that faces the camera it is 0 whatever the distance.
+// order. For a plane that faces the camera it is 0 at any distance.
 double perspectiveOf(const FoundByPoints& found) {
   return found.state.nearness * std::sqrt(found.normal(5, 5));
 }
