@@ -23,7 +23,7 @@ struct Rows {
 struct PixelRect {
   int x, y, width, height;
 
-  // Copies of each of these pixels `perPixel` items of an image that is `across` pixels wide.
+  // Copies `perPixel` items for each of these pixels, in an image that is `across` pixels wide.
   template <class T>
   void copy(const std::vector<T>& from, std::vector<T>& to, int across, size_t perPixel = 1) const {
     for (int row = y; row < y + height; ++row) {
@@ -66,7 +66,7 @@ struct Bands {
 // The pixels of a square window of an image.
 
 // Calls visit(index, dx, dy) for the pixels at most `reach` columns and rows from (x, y), itself
-// included, in reading order. `index`: of the pixel in the image.
+// included, in reading order. `index`: the pixel's index in the image.
 template <class Visit>
 void forWindow(int width, int height, int x, int y, int reach, const Visit& visit) {
   for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
