@@ -20,7 +20,7 @@ struct Chromaticities {
   bool operator==(const Chromaticities&) const = default;
 };
 
-// To three decimals, as files state it.
+// Compares to three decimals, as files state chromaticities.
 bool isRec709(const Chromaticities& space);
 
 // The matrix that converts linear RGB to linear Rec. 709, with the white adapted to D65 by

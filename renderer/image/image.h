@@ -35,8 +35,8 @@ struct Image {
 
 // Images of another size.
 
-// With a box filter: each pixel has the mean of what it covers. An image of the requested size is
-// returned unchanged.
+// Resampled with a box filter: each pixel is the mean of the area that it covers. An image of the
+// requested size is returned unchanged.
 Image resampled(const Image& image, int width, int height);
 
 // The image as it is to be seen, of one that is stored with this orientation (EXIF and TIFF, tag

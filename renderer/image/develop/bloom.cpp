@@ -87,7 +87,7 @@ Image bloom(const Image& image, const std::vector<WeightedGaussian>& mixture,
 
 namespace {
 
-constexpr double kCore = 0.02;  // degrees: of f0, f1 and f2
+constexpr double kCore = 0.02;  // degrees; the arrays are for f0, f1 and f2
 constexpr double kWeights[] = {0.384, 0.478, 0.138};
 constexpr double kFactors[] = {2.61e6, 20.91, 72.37};
 constexpr double kDegree2 = kPiD / 180 * (kPiD / 180);  // steradians

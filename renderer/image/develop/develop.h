@@ -33,9 +33,9 @@ struct DevelopReport {
   size_t limited = 0;  // pixels whose radius of confusion is kMaxConfusionRadius
 };
 
-// Develops an image with channels R, G, B and possibly alpha, by which the colour is multiplied and
-// which is blurred with it. `depth` is for `lens` and else ignored. Needs the memory of at most
-// three more images; the depth blur, that of 12 bytes per pixel more.
+// Develops an image with channels R, G, B and possibly alpha; the colour is premultiplied by alpha,
+// and alpha is blurred with it. `depth` is for `lens` and else ignored. Needs the memory of at most
+// three more images; the depth blur needs 12 bytes per pixel more.
 DevelopReport develop(Image& image, const DevelopSettings& settings, const Image* depth,
                       const ViewFrame& frame);
 

@@ -62,8 +62,8 @@ class OpenedImage : public ModuleImage {
       if ((i % channels == 0) != isTurned) texels[i] = 1 - texels[i];
   }
 
-  // Of grey the library names further samples, which the file does not, after colours. Three
-  // without alpha are colour whose writer states grey, as some do of floats.
+  // For grey images the library names further samples after colours, although the file does not.
+  // Three samples without alpha are colour whose writer states grey, as some do for floats.
   static std::vector<std::string> channelNames(const OIIO::ImageSpec& spec) {
     std::vector<std::string> names = spec.channelnames;
     const int photometric = spec.get_int_attribute("tiff:PhotometricInterpretation", -1);

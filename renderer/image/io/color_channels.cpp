@@ -46,8 +46,8 @@ std::vector<std::string> wordsOf(std::string_view segment) {
 
 enum class Content { Light, Surface, Data };  // Surface: the colour of a material
 
-// By the names of our own layers and of those of Blender, Arnold, V-Ray, Houdini, Cryptomatte and
-// others.
+// The content, judged by the layer names of this program, Blender, Arnold, V-Ray, Houdini,
+// Cryptomatte and others.
 Content contentOf(std::string_view segment) {
   constexpr std::array kDataSegments = {"node",    "clipped",  "material", "ratio",
                                         "samples", "variance", "invalid",  "zback"};
@@ -60,14 +60,14 @@ Content contentOf(std::string_view segment) {
       "mattes",   "count",     "error",     "distance", "coverage", "opacity",     "roughness",
       "metallic", "metalness", "disparity", "facing",   "st",       "motionvector"};
   constexpr std::array kDataPartsOfWords = {"depth", "crypto"};
-  // The filters of V-Ray are what its raw light is multiplied by.
+  // V-Ray's filters are factors of its raw light.
   constexpr std::array kSurfaceWords = {"basecolor", "filter", "wire"};
   constexpr std::array kSurfacePartsOfWords = {"albedo"};
   // Before "color": "BaseColor", "diffuse_color".
   constexpr std::array kOfSurfaces = {"base",       "diffuse",      "specular", "wire",
                                       "subsurface", "transmission", "object",   "material",
                                       "surface",    "vertex"};
-  // Of "Pworld", "Nn" and "Pref", normals and positions.
+  // Spaces in names of normals and positions: "Pworld", "Nn", "Pref".
   constexpr std::array kSpaces = {"world", "camera", "cam",    "object", "obj", "ref", "rest",
                                   "eye",   "view",   "screen", "n",      "g",   "s",   "w"};
   const auto isIn = [](const auto& list, std::string_view word) {

@@ -36,10 +36,10 @@ uint64_t decodedBytes(std::span<const uint8_t> file);
 
 // Decodes WebP by libwebp.
 
-// As decodeImage(), for a WebP file.
+// The same as decodeImage(), for a WebP file.
 DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name);
 
-// As decodedBytes().
+// The same as decodedBytes(), for a WebP file.
 uint64_t webpBytes(std::span<const uint8_t> file);
 
 // PNG and JPEG: files of integer samples, decoded row by row.

@@ -264,7 +264,7 @@ Image ExrRowsReader::read(int top, int count) {
   return rows;
 }
 
-// Of OpenEXR two blocks a thread, with their compression.
+// OpenEXR's buffers: two blocks per thread, with their compression.
 double ExrRowsReader::bufferBytes() const {
   const double row = double(sizeof(float)) * width() * double(channels().size());
   return row * 2.0 * std::thread::hardware_concurrency() * 3 * input_->rowsOfBlock();

@@ -19,13 +19,13 @@ using DecodeSample = std::function<float(float)>;
 
 struct PngColor {
   DecodeSample decode = srgbToLinear;
-  std::optional<Chromaticities> primaries = {};  // nullopt: of sRGB
+  std::optional<Chromaticities> primaries = {};  // nullopt: sRGB's
   std::optional<Transfer> transfer = {};         // nullopt: not stated, `decode` is of sRGB
 };
 
-// By the chunk cICP, else by gAMA and cHRM, which sRGB overrides; they approximate an ICC profile
-// (iCCP), which is not read. Throws std::runtime_error for a cICP whose samples cannot be decoded
-// here, such as those of PQ and HLG.
+// The colour space, from the chunk cICP, else from gAMA and cHRM, which sRGB overrides; they
+// approximate an ICC profile (iCCP), which is not read. Throws std::runtime_error for a cICP whose
+// samples cannot be decoded here, such as PQ and HLG.
 PngColor pngColor(std::span<const uint8_t> file);
 
 }  // namespace chromeball

@@ -166,7 +166,8 @@ class Reader {
     messages_.push_back({kind, path_.string() + ": " + what});
   }
 
-  // Of lines that the header may repeat without end: with their number, after the header.
+  // Messages about lines that the header may repeat without end are reported once, with the number
+  // of lines, after the header.
   void sayOnce(Message::Kind kind, const std::string& what) { ++repeated_[{kind, what}]; }
 
   void sayRepeated() {

@@ -60,7 +60,7 @@ class TexelFile {
   std::unique_ptr<State> state_;
 };
 
-// A temporary file of tiles, of which a limited number is kept in memory.
+// A temporary file of tiles; a limited number of them is kept in memory.
 
 inline constexpr int kTileBytes = 1 << 14;
 
@@ -72,8 +72,8 @@ class TileCache {
  public:
   using Tile = std::shared_ptr<const TileContents>;
 
-  // `bytes`: of tiles in memory; who holds a tile keeps it beyond that. Throws RunError if the file
-  // cannot be created.
+  // `bytes`: the limit for tiles in memory; a tile in use stays beyond that. Throws RunError if the
+  // file cannot be created.
   explicit TileCache(size_t bytes);
   ~TileCache();
   TileCache(const TileCache&) = delete;

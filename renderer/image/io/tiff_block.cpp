@@ -27,7 +27,7 @@ enum TiffType : uint16_t {
   kIfd8 = 18
 };
 
-// Of an unsigned integer; 0: another type.
+// The size of an unsigned integer type; 0 for another type.
 uint64_t integerBytes(uint64_t type) {
   switch (type) {
     case kShort:

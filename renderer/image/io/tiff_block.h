@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TIFF 6.0 and BigTIFF, of which an EXIF block is one: directories of tagged entries.
+// TIFF 6.0 and BigTIFF, the format of EXIF blocks too: directories of tagged entries.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class TiffBlock {
   // The first value of the entry with this tag, if it is above 0 and finite.
   std::optional<double> find(uint64_t directory, uint16_t tag) const;
 
-  // All values of an entry of rational numbers; empty if there is none. Of 0 / 0 they are NaN.
+  // All values of an entry of rational numbers; empty if there is none. 0 / 0 gives NaN.
   std::vector<double> rationals(uint64_t directory, uint16_t tag) const;
 
   // All values of an entry of unsigned integers, such as offsets; empty if there is none.

@@ -66,7 +66,7 @@ bool isSensorImage(const TiffBlock& tiff, uint64_t directory) {
   return photometric == kColorFilterArray || photometric == kLinearRaw;
 }
 
-// The bits of NewSubfileType; SubfileType is what older files have.
+// The bits of NewSubfileType; older files have SubfileType.
 struct SubfileKind {
   bool isReduced, isMask;
 };
@@ -175,7 +175,7 @@ uint64_t pictureDirectory(std::span<const uint8_t> file) {
     throw std::runtime_error(
         "its texels are LogL or LogLuv, of which only 8 bits would be read: convert it to .exr, "
         ".hdr or a .tif of floats");
-  // libtiff takes its white, D50, as that of sRGB, and ICC's numbers as CIE's.
+  // libtiff takes its white, D50, for sRGB's, and ICC's numbers for CIE's.
   if (photometric >= kCieLab && photometric <= kItuLab)
     throw std::runtime_error(
         "its texels are L*a*b*, of which only 8 bits would be read, tinted: "

@@ -14,9 +14,8 @@ namespace chromeball {
 
 // The offset of the directory of the first image that is neither reduced nor a mask; of the first
 // image if there is no such one. Throws std::runtime_error for files whose picture OpenImageIO does
-// not show: those of cameras, which hold the numbers of a sensor and a thumbnail; masks alone;
-// LogLuv, which it clips to 8 bits; truncated ones, and those
-// too short for what they claim to hold.
+// not show: camera files, which hold the numbers of a sensor and a thumbnail; masks alone; LogLuv,
+// which it clips to 8 bits; truncated files, and files too short for what they claim to hold.
 uint64_t pictureDirectory(std::span<const uint8_t> tiff);
 
 // What a TIFF's first image states of its colours (TIFF 6.0, section 20: WhitePoint and

@@ -163,7 +163,7 @@ struct NumbersBeyond {
   }
 };
 
-// Of a .png what is above white is clipped as any bright surface is.
+// Light above white is not reported for a .png: it is clipped like any bright surface.
 Messages numbersLost(const std::filesystem::path& path, const Image& color, bool isHdr) {
   const NumbersBeyond beyond(color, isHdr ? kMaxRgbe : std::numeric_limits<float>::infinity());
   Messages messages;
