@@ -23,8 +23,7 @@ struct PixelErrors {
   // since they are quasi-random.
   std::vector<glm::dvec4> scatter;
 
-  // Adds the squared errors of `other`: the sums are those of the sum or difference of two
-  // independent images.
+  // Adds the squared errors of `other`, as for the sum or difference of two independent images.
   void add(const PixelErrors& other);
 };
 
