@@ -45,7 +45,7 @@ class Archive {
     bytes(items.data(), count * sizeof(T));
   }
 
-  // Of objects with archive().
+  // Objects with archive().
   template <class T>
   requires requires(T& t, Archive& a) { t.archive(a); }
   void operator()(std::vector<T>& items) {
@@ -127,7 +127,7 @@ class MemoryWriter : public Archive {
   }
 };
 
-// `contents` must outlive it. `name`: of the file that they are from.
+// `contents` must outlive it. `name`: the file that they are from.
 class MemoryReader : public Archive {
  public:
   explicit MemoryReader(std::span<const char> contents, std::string name = "memory")

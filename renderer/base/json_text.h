@@ -12,8 +12,8 @@
 
 namespace chromeball {
 
-// On one line if `indent` is negative. Names of files may hold any byte: what is not UTF-8 becomes
-// U+FFFD.
+// The text of a JSON value, on one line if `indent` is negative. Names of files may hold any byte:
+// what is not UTF-8 becomes U+FFFD.
 std::string jsonText(const nlohmann::json& json, int indent = -1);
 std::string jsonText(const nlohmann::ordered_json& json, int indent = -1);
 

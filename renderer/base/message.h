@@ -29,8 +29,8 @@ using Messages = std::vector<Message>;
 
 // Many messages of a kind as one.
 
-// For a terminal: of more than three messages that differ only in numbers and in quoted names, the
-// first with a count of the others.
+// The messages for a terminal: where more than three differ only in numbers and in quoted names,
+// only the first, with a count of the others.
 Messages condensed(const Messages& messages);
 
 }  // namespace chromeball

@@ -54,8 +54,8 @@ class StopMonitor : public WorkMonitor {
   const std::atomic<bool>& stop_;
 };
 
-// While it lives, the monitor is that of this thread's work and of the loops that it starts
-// (base/parallel.h). Null: none, as at first.
+// While it lives, the monitor watches this thread's work and the loops that it starts
+// (base/parallel.h). Null: none, the initial state.
 class MonitoredWork {
  public:
   explicit MonitoredWork(WorkMonitor* monitor);

@@ -16,7 +16,7 @@ namespace chromeball {
 // and the whole to 2000 bytes.
 std::string printable(std::string_view text);
 
-// Likewise a name within a message: at most 200 bytes, also if it has spaces.
+// The same for a name within a message: at most 200 bytes, also if it has spaces.
 std::string printableName(std::string_view name);
 
 // "a, b, c, d, e, f and 994 more": the first names of a list, each as by printableName().
