@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// Of a symmetric matrix: ascending eigenvalues, and unit eigenvectors as columns.
+// The eigensystem of a symmetric matrix: ascending eigenvalues, and unit eigenvectors as columns.
 struct SymmetricEigen {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;

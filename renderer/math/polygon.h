@@ -24,7 +24,7 @@ double signedArea(std::span<const dvec2> polygon);  // positive if counter-clock
 // number.
 std::optional<std::string_view> whyNotSimple(std::span<const dvec2> polygon);
 
-// By the even-odd rule; points on edges belong to either side.
+// Tests by the even-odd rule; points on edges belong to either side.
 bool contains(std::span<const dvec2> polygon, const dvec2& point);
 
 // Indices of the vertices of triangles that together cover a simple counter-clockwise polygon (ear

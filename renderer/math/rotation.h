@@ -25,10 +25,10 @@ class Rotation {
     double yaw, pitch, roll;  // degrees
   };
 
-  // About +Y alone. The constructors throw InputError if a number is not finite.
+  // A rotation about +Y alone. The constructors throw InputError if a number is not finite.
   Rotation(float yawDegrees = 0);
   static Rotation ofAngles(const Angles& angles);
-  // Of any length. Throws InputError if it is 0. Without a tilt it is a yaw.
+  // From a quaternion of any length but 0; throws InputError for 0. Without a tilt it is a yaw.
   static Rotation ofQuaternion(const glm::dquat& quaternion);
 
   // Whether it is more than a yaw.

@@ -101,7 +101,8 @@ class PixelSampler {
     return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: not stratified
   }
   float get1(int d) const { return toUnit(bits(d)); }
-  // With 53 bits, to choose among more than 2^24 items; the lower 21 bits are not stratified.
+  // A number with 53 bits, to choose among more than 2^24 items; the lower 21 bits are not
+  // stratified.
   double getFine1(int d) const {
     constexpr uint64_t kPurpose = 0x66696e65;  // separate random stream
     const uint64_t low = hash(key_ ^ kPurpose, index_, uint64_t(d + base_)) >> 43;
@@ -109,8 +110,8 @@ class PixelSampler {
   }
   vec2 get2(int d) const { return {get1(d), get1(d + 1)}; }
 
-  // When the shutter sees the sample: a dimension of its own, which only renders of moving scenes
-  // use, padded to those of the table.
+  // The sample's time within the shutter interval: a separate dimension, used only for moving
+  // scenes, padded to the dimensions of the table.
   float time() const {
     constexpr uint64_t kPurpose = 0x74696d65;  // separate random stream
     const uint64_t order = hash(seed_, kPurpose);
