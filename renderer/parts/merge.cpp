@@ -90,7 +90,7 @@ void paste(const Image& part, const Crop& at, Image& whole) {
     std::copy_n(part.at(0, y), part.width * part.channels, whole.at(at.x, at.y + y));
 }
 
-// Of the whole image, without the plate and the reflectance.
+// The plan for the whole image, without the plate and the reflectance.
 FinishPlan wholePlan(FinishPlan plan) {
   RenderSettings& s = plan.settings;
   s.crop.reset();
@@ -112,7 +112,7 @@ double bytesOf(const FinishPlan& plan) {
   return imageBytes(s) + perPixel * s.width * s.height;
 }
 
-// Whether the films of a part can be added to those of the whole.
+// Whether the films of a part can be added to the whole's.
 bool fits(const FinishPlan& part, const FinishPlan& whole) {
   const RenderSettings &a = part.settings, &b = whole.settings;
   return a.width == b.width && a.height == b.height && a.aovs == b.aovs && a.denoise == b.denoise &&
