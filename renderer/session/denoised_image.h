@@ -28,9 +28,9 @@ std::optional<Denoised> denoiseRender(const RenderResult& result, const Progress
 // The share of rendering in the progress of a job that denoises.
 inline constexpr double kRenderShare = 0.9;
 
-// Replaces the color of `image` (its alpha only by one that is denoised) by the denoised one, and
-// adds the layers `noisy` and `denoise_error`. `progress` receives fractions from kRenderShare
-// to 1. `noise`: of the image before, which the remaining noise does not exceed; NaN: unknown.
+// Replaces the color of `image` by the denoised one (alpha only if it is denoised too), and adds
+// the layers `noisy` and `denoise_error`. `progress` receives fractions from kRenderShare to 1.
+// `noise`: the noise before denoising, which the remaining noise does not exceed; NaN: unknown.
 // nullopt if `denoise` returns nullopt.
 using Denoiser = std::function<std::optional<Denoised>(const Progress& progress)>;
 std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, double noise,

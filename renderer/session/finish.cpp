@@ -116,7 +116,7 @@ std::optional<Placement> placementOf(const RenderSettings& s) {
   return Placement{s.crop->x, s.crop->y, s.width, s.height};
 }
 
-// By the difference formula, with its errors.
+// The composite by the difference formula, with its errors.
 struct Difference {
   Image mean;
   PixelErrors errors;

@@ -32,8 +32,8 @@ constexpr std::array kOfImage = {"camera",       "cameraPosition", "cameraFov", 
                                  "scene-camera", "lens",           "optics"};
 constexpr std::array kVariedByComparisons = {"strategy", "adaptive", "guide"};
 
-// For row vectors: each row is the transformed unit vector of an axis, the last row the transformed
-// origin.
+// The matrix for row vectors: each row is the transformed unit vector of an axis, the last row the
+// transformed origin.
 Json rows(const glm::dmat4& matrix) {
   Json numbers = Json::array();
   for (int column = 0; column < 4; ++column)  // glm's matrices are for column vectors

@@ -18,12 +18,12 @@ struct LoadedScene;
 
 class LiveImage {
  public:
-  // Both must outlive this, and this the render.
+  // Both arguments must outlive this, and this must outlive the render.
   LiveImage(const LoadedScene& loaded, LiveResult& live) : loaded_(loaded), live_(live) {}
 
-  // The image so far; null before the first samples. Of a composite, all pixels are composed again.
-  // Otherwise only what has changed costs time, if of the two images that were returned last one is
-  // not in use any more.
+  // The image so far; null before the first samples. For a composite, all pixels are composed
+  // again. Otherwise only changed tiles cost time, if one of the last two images returned is no
+  // longer in use.
   std::shared_ptr<const SessionImage> update(double noise);
 
  private:

@@ -33,15 +33,15 @@ struct LoadedScene {
   Messages messages;                       // of the job's settings, of the models and of the probe
   std::vector<std::string> modelWarnings;  // of their files and their motion
 
-  // For composites; otherwise empty.
+  // These are for composites; otherwise empty.
   ObjectMask isObject;                     // the rest of the scene is the local scene
   std::unique_ptr<Projection> projection;  // of the local scene's reflectance, where it is solved
-  std::optional<PlateScale> plateScale;    // by which the probe was scaled
+  std::optional<PlateScale> plateScale;    // the factor that the probe was scaled by
 };
 
 // Reads models and probe, chooses the camera, and the image's size if the description leaves it to
-// the camera. Of other frames: `shared`, what their models have in common, and `view`, which theirs
-// have decided; both may be null. Throws InputError.
+// the camera. For further frames of a sequence: `shared`, what their models have in common, and
+// `view`, decided by the other frames; both may be null. Throws InputError.
 LoadedScene loadScene(const RenderDescription& description, ModelCache* shared = nullptr,
                       const AutomaticView* view = nullptr);
 

@@ -20,7 +20,7 @@ struct RenderDescription;
 struct AutomaticView {
   std::optional<Camera> camera;  // if nobody has placed one
   vec3 centre{0};                // of the camera's turn; 0 without one
-  glm::dvec3 origin{0};          // of these coordinates in the world, metres
+  glm::dvec3 origin{0};          // the world position of these coordinates' origin, metres
 
   AutomaticView seenFrom(const glm::dvec3& other) const;  // with another origin
 };
@@ -35,7 +35,7 @@ Camera chooseCamera(const RenderDescription& job, const Scene& scene, const Auto
 
 struct ModelCache;
 
-// With the scene file's lamps.
+// The models, with the scene file's lamps.
 struct PlacedModels {
   Scene scene;
   Camera camera;
@@ -46,13 +46,13 @@ struct PlacedModels {
 };
 
 // Reads the models; chooses the camera, and the image's size if the job leaves it to the camera.
-// Moves what the scene file places in the world to the scene's coordinates. With an open shutter,
-// with the motion of models and camera. `view`: of other frames; null: to be found. Throws
-// InputError.
+// Converts what the scene file places in the world to the scene's coordinates. If the shutter is
+// open, includes the motion of models and camera. `view`: from other frames; null: to be found.
+// Throws InputError.
 PlacedModels placeModels(RenderDescription& job, ModelCache& cache,
                          const AutomaticView* view = nullptr);
 
-// The same of models that stand still, of which only the camera is to be placed again.
+// The same for models that stand still: only the camera is placed again.
 Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin);
 

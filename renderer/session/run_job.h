@@ -23,9 +23,8 @@ struct PreparedScene {
 };
 
 // Throws InputError for a strategy that is unknown or does not suit the probe, and for light groups
-// that take more memory than the job may.
-// `earlier`: of the same LoadedScene before its contents changed, from which what did not change is
-// taken; null: none.
+// that take more memory than the job may. `earlier`: made from the same LoadedScene before its
+// contents changed; what did not change is taken from it. Null: none.
 PreparedScene prepareScene(const LoadedScene& loaded, const PreparedScene* earlier = nullptr);
 
 // How the image is made of the job's samples.

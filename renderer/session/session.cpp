@@ -86,10 +86,10 @@ class Session::Implementation : private WorkMonitor {
 
   const SessionCallbacks callbacks_;
   RenderDescription description_;
-  std::optional<RenderDescription> given_;  // that of loaded_
+  std::optional<RenderDescription> given_;  // the one that loaded_ was made from
   std::unique_ptr<LoadedScene> loaded_;
   PreparedScene prepared_;
-  bool lightingIsStale_ = false;  // that of prepared_: its making was cancelled, or has failed
+  bool lightingIsStale_ = false;  // in prepared_: making it was cancelled or has failed
   ModelCache models_;
   Work work_;
   std::unique_ptr<WatchedRender> control_;

@@ -39,12 +39,12 @@ struct SessionCallbacks {
   std::function<void()> finished = {};  // the last one of each start, also of one that failed
 };
 
-// Loads and renders a description in a thread of its own, hands out what there is so far without
-// stopping those that render, and takes other descriptions, of which it redoes only what differs
-// from the one before. After update() the picture has the bits of a new session's.
+// Loads and renders a description in a background thread, hands out the image so far without
+// stopping the render, and accepts further descriptions, for which it redoes only what differs from
+// the one before. After update() the picture has the same bits as a new session's.
 //
-// Its functions may be called from any thread, by one at a time. Errors of the background thread
-// (InputError, RunError) are thrown by the next wait().
+// Its functions may be called from any thread, but by one thread at a time. The next wait() throws
+// errors of the background thread (InputError, RunError).
 class Session {
  public:
   explicit Session(RenderDescription description, SessionCallbacks callbacks = {});
