@@ -21,7 +21,7 @@ bool areEqual(const std::vector<Key>& keys) {
   return std::ranges::all_of(keys, [&](const Key& key) { return key == keys.front(); });
 }
 
-// The keys of parts and lamps of a scene, the first those of the scene itself.
+// The keys of parts and lamps of a scene, the first ones from the scene itself.
 struct Keys {
   std::vector<InstanceMotion> instances;
   std::vector<std::vector<LampPose>> lamps;

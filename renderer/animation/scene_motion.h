@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a scene at several times to its motion.
+// Derives motion from a scene at several times.
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ std::vector<std::string> addMotion(Scene& scene, const std::vector<Scene>& later
 
 // The same parts and lamps in scenes of the same models at several times.
 
-// By instance of `scene`, the same part in `other`; null if the node has other parts there, or ones
-// that are turned inside out.
+// For each instance of `scene`, the same part in `other`; null if the node has other parts there,
+// or ones that are turned inside out.
 std::vector<const Instance*> partsIn(const Scene& other, const Scene& scene);
 
-// By lamp of `scene`, that of the same node in `other`; null if there is none.
+// For each lamp of `scene`, the lamp of the same node in `other`; null if there is none.
 std::vector<const PunctualLight*> lampsIn(const Scene& other, const Scene& scene);
 
 // How well keys follow the motion that they are taken from.
