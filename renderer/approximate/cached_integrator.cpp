@@ -157,7 +157,7 @@ class CacheFiller {
     if (!record) return {};
     record->leastRadius = leastRadius(point);
     if (record->radius < record->leastRadius) {
-      // As it changes less over the distances that the image shows.
+      // The irradiance changes less over the distances that the image shows.
       for (vec3& gradient : record->translation) gradient *= record->radius / record->leastRadius;
       record->radius = record->leastRadius;
     }

@@ -136,8 +136,8 @@ Rgb EnvironmentMapIntegrator::ofSources(const Point& point, PathContext& context
   return sum;
 }
 
-// Of the sources that light samples do not find: for a smooth lobe, all that is seen; else the
-// light that no light sample has a pdf for, which is the same from all directions
+// The radiance of sources that light samples do not find: for a smooth lobe, of all that it sees;
+// else the light that no light sample has a pdf for, which is the same from all directions
 // (scene_sources.h).
 Rgb EnvironmentMapIntegrator::unsampled(const Point& point, const MapLobe& lobe) const {
   const bool isSmooth = !lobe.isDiffuse && lobe.roughness == 0;

@@ -52,7 +52,7 @@ class GatheredPath {
   GatheredPath(const PathTracer& tracer, const PathTracer& sources)
       : tracer_(tracer), sources_(sources) {}
 
-  // `hit`: of the state's ray, the first one from the point.
+  // `hit`: the first one from the point, along the state's ray.
   Rgb follow(PathState state, std::optional<Hit> hit, PathContext& context) const {
     const vec3 start = state.from.position;
     while (hit) {

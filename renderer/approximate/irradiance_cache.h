@@ -71,9 +71,9 @@ class IrradianceCache {
   // there: the smallest radius less the distance; nullopt where none may be used.
   std::optional<float> claimedRadius(const vec3& position, const vec3& normal) const;
 
-  // Adds a record. Of two that are close to each other, neither may have a radius above the other's
-  // plus their distance: what is near to one is near to the other too (Krivanek, Bouatouch,
-  // Pattanaik and Zara 2006, "Making Radiance and Irradiance Caching Practical").
+  // Adds a record. The radius of a record must not exceed a neighbour's radius plus their distance:
+  // what is near to one is near to the other too (Krivanek, Bouatouch, Pattanaik and Zara 2006,
+  // "Making Radiance and Irradiance Caching Practical").
   void add(IrradianceRecord record);
 
   // The records alone.

@@ -30,12 +30,12 @@ struct SkyRay {
   Rgb transmittance;
 };
 
-// Of density cos / pi around `normal`; nothing passes below the geometry. A ray that is not blocked
-// within `distance` metres sees the sky. Uses the random numbers of light samples.
+// A sky ray with density cos / pi around `normal`; nothing passes below the geometry. A ray that is
+// not blocked within `distance` metres sees the sky. Uses the random numbers of light samples.
 SkyRay cosineSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
                     RayMask visible, PathContext& context);
 
-// Of constant density over the hemisphere.
+// A sky ray with constant density over the hemisphere.
 SkyRay uniformSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
                      RayMask visible, PathContext& context);
 
