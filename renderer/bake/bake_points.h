@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The points of surfaces whose light is baked: those of an atlas's texels, or vertices.
+// The points of surfaces where light is baked: an atlas's texels, or vertices.
 #pragma once
 
 #include "bake/atlas.h"
@@ -8,7 +8,7 @@ namespace chromeball {
 
 struct BakePoint {
   uint32_t x, y;  // the texel; or the vertex and the instance
-  int chart;      // index, or that of the instance
+  int chart;      // index of the chart, or of the instance
   int instance;
   uint32_t triangle;
   vec2 barycentric;  // weights of the second and third vertex

@@ -15,11 +15,11 @@ struct Lightmap {
   float brightest = 0;  // channel of the colours that count for the scale
 };
 
-// `light`: of each point, filtered or not; buried ones take that of their neighbours.
+// `light`: each point's, filtered or not; buried points take their neighbours' light.
 Lightmap makeLightmap(const PointLight& what, const std::vector<BakePoint>& points,
                       const BakeResult& baked, const std::vector<Rgb>& light, const Atlas& atlas);
 
-// By instance: a vertex for each chart that a vertex of the mesh is in.
+// The geometry of each instance, with a vertex for each chart that a vertex of the mesh is in.
 std::vector<BakedGeometry> lightmappedGeometry(const std::vector<PlacedMesh>& meshes,
                                                const std::vector<Chart>& charts,
                                                const Atlas& atlas);
@@ -29,7 +29,7 @@ std::vector<BakedGeometry> lightmappedGeometry(const std::vector<PlacedMesh>& me
 // The light of each point, filtered by nonlocal means (Rousselle et al. 2012): each half of the
 // samples is averaged over the texels of the same chart whose surroundings are alike in the other
 // half, up to the noise of both. Constant light stays the same to the last bit. Buried points take
-// no part. `points`: of texels of a page of this size.
+// no part. `points`: the texels of a page of this size.
 std::vector<Rgb> filteredLight(const std::vector<BakePoint>& points, const BakeResult& baked,
                                int size);
 
