@@ -33,8 +33,8 @@ struct Composite {
 Composite compose(const DifferentialFilm& film, const Image& mean, const Image& plate,
                   CompositeMode mode);
 
-// The luminances and errors of the composite. `errors`: those of the difference formula. For the
-// ratio they are propagated to first order, with L_noobj treated as exact.
+// The luminances and errors of the composite. `errors`: the difference formula's. For the ratio
+// they are propagated to first order, with L_noobj treated as exact.
 PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& composite,
                             PixelErrors errors);
 

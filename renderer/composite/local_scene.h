@@ -26,7 +26,7 @@ ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& name
 void makeProjected(Scene& scene, const ObjectMask& isObject, const Projection& projection);
 
 // Gives the base of the local scene's materials a dielectric specular lobe (section 9.7.2):
-// `strength` times that of refractive index 1.5; `roughness` as in glTF. Coats, sheen and
+// `strength` times the lobe of refractive index 1.5; `roughness` as in glTF. Coats, sheen and
 // transmission stay.
 void makeGlossy(Scene& scene, const ObjectMask& isObject, float strength, float roughness);
 
