@@ -62,7 +62,7 @@ Component componentOf(HalfPlanes halves) {
   return component;
 }
 
-constexpr float kInsignificant = 0.005f;  // difference of a feature; of disparity: relative
+constexpr float kInsignificant = 0.005f;  // difference of a feature; relative for disparity
 
 // The halves of a feature, scaled, as guides of each other.
 HalfGuides guidesOf(const HalvedImage& image, float scale) {
@@ -83,7 +83,7 @@ HalfGuides guidesOf(const HalvedImage& image, float scale) {
   return halves;
 }
 
-// Features without their own noise, which is correlated with that of the image where a pixel sees
+// Features without their own noise, which is correlated with the image's noise where a pixel sees
 // several surfaces at random (edges, lenses, transparency): a regression would keep it.
 FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& stop) {
   FeaturePlanes features;
@@ -236,7 +236,7 @@ double remainingNoise(const Denoised& denoised) {
   if (!(mean > 0)) return std::numeric_limits<double>::quiet_NaN();
   for (int y = 0; y < color.height; ++y)
     for (int x = 0; x < color.width; ++x) {
-      // As far as is known, a pixel is as bright as its error if that exceeds its luminance.
+      // As far as is known here, a pixel is as bright as its error if that exceeds its luminance.
       const double absolute = double(*error.at(x, y));
       const double reference =
           std::max({double(luminance(color.rgb(x, y))), absolute, 0.01 * mean});

@@ -19,7 +19,7 @@ struct DenoiseInput {
   HalvedImage albedo, normal, disparity;  // of FeatureFilm
 };
 
-// Both RGB; the errors are estimates, of noise and blur together.
+// Both images are RGB; the errors are estimates of noise and blur together.
 struct DenoisedPart {
   Image color, squaredError;
 };

@@ -148,7 +148,7 @@ Float8 raised(Float8 weight) {
   return weight;
 }
 
-// Eight pixels from (x, y); `index` is that of the first in its tile.
+// Processes eight pixels from (x, y); `index` is the first one's in its tile.
 template <int kPower>
 void addRegression(const TileWeights& weights, size_t index, const RgbPlanes& color,
                    const FeaturePlanes& features, int x, int y, Predictions& predictions) {
