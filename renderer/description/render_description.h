@@ -122,7 +122,7 @@ struct RenderDescription {
   LightingDescription lighting;
   std::optional<CompositeDescription> composite;
 
-  RenderSettings settings;        // of the integrator; the size is that of LoadedScene::description
+  RenderSettings settings;  // of the integrator; the final size is in LoadedScene::description
   std::optional<ImageSize> size;  // nullopt: determined by the model's camera
   SingleSided singleSided = SingleSided::Camera;
   bool straightGlassShadows = false;  // passShadowsStraight()
@@ -132,7 +132,7 @@ struct RenderDescription {
   Origins origins;
   std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
 
-  // For messages: that of the first model.
+  // The scene's name in messages: the first model's.
   std::string sceneName() const { return models.empty() ? "the scene" : models.front().file; }
 };
 
