@@ -22,7 +22,7 @@ LightUnits parseLightUnits(const NamedSetting& setting);
 // "A,B" or "A,B,C": exactly `count` finite numbers. Throws InputError, begun by `location`.
 std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view location);
 
-// The positive floats, for messages; and whether a number is one of them.
+// The range of positive floats, for messages; and whether a number is in it.
 inline constexpr const char* kPositiveFloats = "1.4e-45 to 3.4e38, the range of a float";
 bool isPositiveFloat(double number);
 

@@ -34,7 +34,7 @@ vec3 readScale(const Entry& entry) {
   return scale;
 }
 
-// `name`: of the model in the description.
+// `name`: the model's in the description.
 ModelEntry readModel(const Entry& entry, const std::string& name, Origins& origins) {
   if (entry.node->is_string()) return {existingFile(entry), {}, {}};
   if (!entry.node->is_table()) entry.mustBe("a file name or a table");

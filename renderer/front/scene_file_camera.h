@@ -14,8 +14,8 @@ namespace chromeball {
 // Throws InputError.
 void readCamera(const Section& section, SceneFile& scene);
 
-// Replaces the camera of `scene` by that of a file with nothing but [camera] with `position` and
-// `look_at`, as `chromeball camera solve` writes it. Throws InputError.
+// Replaces the camera of `scene` by the camera of a file with nothing but [camera] with `position`
+// and `look_at`, as `chromeball camera solve` writes it. Throws InputError.
 void readCameraFile(const std::string& path, SceneFile& scene);
 
 // Writes cameras to files with a section [camera], which scene files name.

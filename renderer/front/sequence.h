@@ -16,7 +16,7 @@ struct SequenceFrame {
   Settings given;   // over the scene's, as for planJob()
 };
 
-// The frames that `--frames` names, or that of them which `--frame` names. Frame k is at k / fps
+// The frames that `--frames` names, or the one of them that `--frame` names. Frame k is at k / fps
 // seconds. The camera turns by (k - first) / (last + step - first) of `orbit`, so that a last turn
 // of the same size would close a circle.
 class Sequence {

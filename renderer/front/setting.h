@@ -33,7 +33,7 @@ enum class SettingType {
   Compound,  // a structured key with its own reader; `form` describes it
 };
 
-// Of an Integer, a Number or the elements of Numbers or of a Compound.
+// The range of an Integer, of a Number, or of the elements of Numbers or a Compound.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
