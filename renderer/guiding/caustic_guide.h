@@ -106,7 +106,7 @@ class CausticGuide {
     return region.empty() ? nullptr : &region;
   }
 
-  // Of the bounces in regions with lobes, those whose direction comes from the lobes.
+  // The fraction of bounces in regions with lobes that take their direction from the lobes.
   float fraction() const { return fraction_; }
   static constexpr float kTrainingFraction = 0.25f;
   void setFraction(float fraction) { fraction_ = fraction; }
