@@ -16,8 +16,8 @@ Image sumOf(std::span<const Image> layers);
 
 Image scaled(Image layer, const Rgb& gain);
 
-// By what factor the picture darkens where the light of one layer is blocked: (whole - layer) /
-// whole, limited to 0..1; 1 where the picture is black.
+// The factor by which the picture darkens where the light of one layer is blocked: (whole - layer)
+// / whole, limited to 0..1; 1 where the picture is black.
 Image shadowMatte(const Image& whole, const Image& layer);
 
 // Pictures lit by another probe from layers of their surfaces: ambient occlusion times diffuse

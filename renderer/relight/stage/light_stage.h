@@ -46,11 +46,11 @@ void checkInMemory(const DirectionBasis& basis, int width, int height, double me
 
 // A probe as weights of a light stage's elements.
 
-// Of cells: the mean radiance of the rotated probe over each. Of spherical harmonics: the integral
-// of radiance times the function. By quadrature over the bilinear interpolation of the map, each
-// point with its exact solid angle, on a grid of at least the map's texels: 4096 x 2048 points or
-// more for cells, so that a cell's edge is off by 0.04 degrees at most. Parallel; the same bits for
-// any number of threads.
+// The probe's weight for each function of the basis. For cells: the mean radiance of the rotated
+// probe over each. For spherical harmonics: the integral of radiance times the function. Computed
+// by quadrature over the bilinear interpolation of the map, each point with its exact solid angle,
+// on a grid of at least the map's texels: 4096 x 2048 points or more for cells, so that a cell's
+// edge is off by 0.04 degrees at most. Parallel; the same bits for any number of threads.
 std::vector<Rgb> lightWeights(const DirectionBasis& basis, const Image& latLong,
                               const Rotation& rotation, int leastWidth = 4096);
 
@@ -58,8 +58,8 @@ std::vector<Rgb> lightWeights(const DirectionBasis& basis, const Image& latLong,
 // section 9.9.2, Figure 9.45).
 
 // A lat-long map of radiance per irradiance on a surface that faces the light, 1/sr: f cos x
-// visibility, and interreflection. Of boxes one texel for each; of other bases 64 x 32 texels, of
-// which each shows the cell of its centre, or the sum of the harmonics.
+// visibility, and interreflection. For boxes it has one texel each; for other bases 64 x 32 texels,
+// each showing the cell at its centre, or the sum of the harmonics.
 Image reflectanceFunction(const LightStage& stage, int x, int y);
 
 // A light stage from photographs: pictures of a subject under a lamp in each of many directions

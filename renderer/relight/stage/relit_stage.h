@@ -49,11 +49,10 @@ Image weightedSum(const Image& elements, std::span<const Rgb> weights);
 // `own`: LightStage::own, which may be empty.
 void addOwnLight(Image& sum, const Image& own);
 
-// Root of the sum of squared differences, divided by that of the squares of `whole`; 0 if that is
-// black.
+// Root of the sum of squared differences over the sum of squares of `whole`; 0 if `whole` is black.
 double relativeDifference(const Image& part, const Image& whole);
 
-// Of the numbers in the domain, those of largest magnitude that are kept.
+// The shares of the numbers in the domain that are kept, those of largest magnitude.
 struct KeptShares {
   double stage = 1, light = 1;  // above 0, up to 1
 

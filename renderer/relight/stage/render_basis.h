@@ -21,8 +21,8 @@ struct BasisRender {
 
 // The scene is lit from everywhere by radiance 1, as the strategy `uniform` samples it; what a path
 // finds from a direction goes to the elements that are not 0 there. So a stage costs little more
-// than a picture, and takes 12 bytes for each pixel and element. Of the settings, those of light
-// and paths count, with the size, samples and seed; all pixels take the same number of samples.
+// than a picture, and takes 12 bytes for each pixel and element. Only the settings of light and
+// paths count, with the size, samples and seed; all pixels take the same number of samples.
 class BasisRenderer {
  public:
   // `world` and `camera` must outlive this.

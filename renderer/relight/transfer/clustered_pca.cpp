@@ -29,7 +29,7 @@ MatrixXf principalVectors(const MatrixXd& centred, int most) {
     if (!(eigen.values[i] > least)) break;
     VectorXd vector = eigen.vectors.col(i);
     if (!isWide) vector = (centred * vector).eval();
-    // Against the earlier ones, from which rounding moves those of small variance.
+    // Orthogonalises against the earlier ones: rounding moves vectors of small variance off.
     for (const VectorXd& other : found) vector -= other.dot(vector) * other;
     found.push_back(vector.normalized());
   }

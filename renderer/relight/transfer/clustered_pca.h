@@ -23,12 +23,12 @@ struct Signals {
 struct ClusteredPca {
   struct Cluster {
     std::vector<float> mean;
-    Signals vectors;  // orthonormal, largest variance first; m of them at most
+    Signals vectors;  // orthonormal, largest variance first; at most m
   };
   std::vector<Cluster> clusters;
   std::vector<int> clusterOf;               // by signal
   std::vector<std::vector<float>> weights;  // by signal: as many as its cluster's vectors
-  // Root of the sum of squared differences of all signals, over that of the signals' squares.
+  // Root of the sum of squared differences of all signals over the sum of the signals' squares.
   double error = 0;
 
   std::vector<float> signal(size_t i) const;

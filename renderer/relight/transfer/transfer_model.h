@@ -20,12 +20,11 @@ namespace chromeball {
 // Precomputed radiance transfer of diffuse surfaces: what each function of a basis of light makes
 // at points of a scene (Sloan, Kautz and Snyder 2002, section 5; HDRI book, section 9.9.2).
 
-// The functions on the sphere of which the light of transfer is a weighted sum: spherical
-// harmonics, or Haar wavelets on the faces of a cube (HDRI book, section 9.9.2).
+// The functions on the sphere whose weighted sum is the light of transfer: spherical harmonics, or
+// Haar wavelets on the faces of a cube (HDRI book, section 9.9.2).
 
-// What light with coefficients l makes is the sum of l_k t_k, where t_k is what light of the
-// function k alone makes: transfer (Sloan, Kautz and Snyder 2002; Ng, Ramamoorthi and Hanrahan
-// 2003).
+// The result of light with coefficients l is the sum of l_k t_k, where t_k, the transfer, is the
+// result of function k alone (Sloan, Kautz and Snyder 2002; Ng, Ramamoorthi and Hanrahan 2003).
 //
 // sh:ORDER  the real spherical harmonics up to this order; l_k is the integral of radiance x Y_k.
 // haar:N    Haar wavelets of a cube map of N x N cells on each face, face by face. l is the
@@ -89,8 +88,8 @@ struct VertexTransfer {
 // Values are irradiance / pi per unit of each function: the radiance of a white Lambertian surface,
 // as light that shines on it, with shadows and light that other surfaces reflect to it. For
 // harmonics and an open point with normal n, value k is A_l / pi Y_k(n), with the A_l of
-// shIrradiance(), continued to higher bands (Ramamoorthi and Hanrahan 2001, eq. 8). `meshes`:
-// of all instances. The result depends on points, samples and seed only.
+// shIrradiance(), continued to higher bands (Ramamoorthi and Hanrahan 2001, eq. 8). `meshes`: all
+// instances'. The result depends on points, samples and seed only.
 VertexTransfer estimateTransfer(const World& world, const std::vector<PlacedMesh>& meshes,
                                 const std::vector<BakePoint>& points, const LightBasis& basis,
                                 const TransferSettings& settings, const Progress& progress);
@@ -111,7 +110,8 @@ class TransferFile {
   const LightBasis& basis() const { return basis_; }
   const Scene& scene() const { return scene_; }
 
-  // By vertex of the instance's mesh. The second throws InputError where the first has null.
+  // The attribute by vertex of the instance's mesh. The second function throws InputError where the
+  // first returns null.
   const std::vector<vec3>* find(size_t instance, const std::string& name) const;
   const std::vector<vec3>& attribute(size_t instance, const std::string& name) const;
 
@@ -126,9 +126,10 @@ class TransferFile {
   Scene scene_;
 };
 
-// By instance, in the order of vertexPoints(), with the attributes _PRT_0, _PRT_1, ... (values of
-// estimateTransfer(): irradiance / pi per function of the basis, RGB) and _PRT_OWN (light of the
-// scene's own lamps), if there is any. Vertices inside of bodies take the mean of their neighbours.
+// The geometry of each instance, in the order of vertexPoints(), with the attributes _PRT_0,
+// _PRT_1, ... (values of estimateTransfer(): irradiance / pi per function of the basis, RGB) and
+// _PRT_OWN (light of the scene's own lamps), if there is any. Vertices inside of bodies take the
+// mean of their neighbours.
 std::vector<BakedGeometry> transferGeometry(const std::vector<PlacedMesh>& meshes,
                                             const std::vector<BakePoint>& points,
                                             const VertexTransfer& transfer);

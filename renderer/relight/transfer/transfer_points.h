@@ -30,7 +30,7 @@ struct EscapingPath {
   Rgb found{0};  // of the scene's own lamps and emission
 };
 
-// Follows a path up to where it ends. `tracer`: of a NoProbe.
+// Follows a path up to where it ends. `tracer`: its lighting is a NoProbe.
 inline EscapingPath follow(const PathTracer& tracer, PathState state, PathContext& context) {
   for (;;) {
     context.sampler.startVertex(state.depth);
@@ -48,7 +48,8 @@ struct TransferWorker {
   std::vector<dvec3> sums;
 };
 
-// The random numbers of all points, and the loop over their samples. `tracer`: of a NoProbe.
+// The random numbers of all points, and the loop over their samples. `tracer`: its lighting is a
+// NoProbe.
 class TransferPoints {
  public:
   TransferPoints(const PathTracer& tracer, const std::vector<PlacedMesh>& meshes,
@@ -88,8 +89,8 @@ class TransferPoints {
     workers.forEach([&](const TransferWorker& worker) { result.invalid.add(worker.invalid); });
   }
 
-  // For each sample, with its random numbers set: add(trace()), but for invalid paths. Returns how
-  // many are valid.
+  // Calls add(trace()) for each sample, with its random numbers set, except for invalid paths.
+  // Returns how many are valid.
   template <class Trace, class Add>
   uint32_t forSamples(size_t index, TransferWorker& worker, const Trace& trace,
                       const Add& add) const {
