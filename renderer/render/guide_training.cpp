@@ -20,7 +20,7 @@ constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays 
 constexpr double kWorthwhile = 0.8;
 constexpr size_t kEnough = 20'000;  // records that prove the latter
 
-constexpr double kPhotonRays = 0.15;  // relative to those of the render, which are estimated:
+constexpr double kPhotonRays = 0.15;  // relative to the render's, which are estimated:
 constexpr double kRaysPerSecond = 2e6;
 constexpr double kSamplesUnderNoiseLimit = 256;
 

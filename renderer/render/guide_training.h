@@ -32,7 +32,7 @@ class GuideTraining {
   // (LightSource::canBeGuided()).
   GuideTraining(const World& world, const LightSource& lighting, const RenderSettings& settings);
 
-  // With the guides, which are empty at first.
+  // The settings with the guides, which are empty at first.
   PathSettings guided(PathSettings path) const;
 
   // Before the first pass. `raysPerSample`: about how many rays a sample of a pixel takes.
@@ -46,11 +46,11 @@ class GuideTraining {
   // Where a path of the pixel puts its records; null: nowhere. Thread-safe for different tiles.
   GuideRecords* recordsOf(size_t tile, uint64_t pixel);
 
-  // Light samples: learns from all records so far. If guiding begins: the weight of the samples so
-  // far relative to that of later ones, which have less variance.
+  // Trains the guide of light samples with all records so far. If guiding begins: the weight of the
+  // samples so far relative to that of later ones, which have less variance.
   std::optional<double> learnLights();
-  // Bounces: decides with which fraction they are guided, if at all. Frees the records. `errors`:
-  // of the image so far, with `samples` per pixel. Does nothing if the training has ended before.
+  // Decides which fraction of bounces is guided, if any. Frees the records. `errors`: the image's
+  // so far, with `samples` per pixel. Does nothing if the training has ended before.
   void end(const PixelErrors& errors, uint32_t samples);
   bool hasEnded() const { return records_.empty(); }
   void archive(Archive& a);  // after the end

@@ -37,7 +37,7 @@ class SampleSequence {
   };
 
   // Calls visit(run) for those of a half's samples [begin, end) that are this shard's, in order.
-  // The interval must not hold repeated samples and others.
+  // The interval must not hold both repeated samples and others.
   template <class Visit>
   void forRuns(int half, uint32_t begin, uint32_t end, const Visit& visit) const {
     const uint64_t repeated = samplesOf(half, shard_.repeated);
@@ -76,12 +76,12 @@ class PixelRenderer {
 
   PixelWorker makeWorker() const;
 
-  // Adds those of samples [from, to) of a pixel of the film that are the shard's to the result.
-  // Thread-safe for different pixels.
+  // Adds the shard's part of samples [from, to) of a pixel of the film to the result. Thread-safe
+  // for different pixels.
   void render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to,
               const Beam& beam) const;
 
-  // Of the camera rays through a grid of points, those that hit something.
+  // The fraction of camera rays, through a grid of points, that hit something.
   double fractionOfHits() const;
 
  private:

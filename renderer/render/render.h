@@ -20,7 +20,7 @@ class IrradianceCache;
 class RenderControl;
 
 struct RenderResult {
-  // Empty films. `layers`: those of the integrator.
+  // A result with empty films. `layers`: the integrator's.
   RenderResult(const RenderSettings& settings, std::vector<Accumulation> layers);
   // Adds the samples of a part of the image, whose first pixel is this one's pixel (x, y).
   void add(const RenderResult& part, int x, int y) { addPixels(part, x, y), addTotals(part); }
@@ -71,7 +71,7 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
                     const std::atomic<bool>& stop, RenderControl* control = nullptr,
                     const RenderAids& aids = {});
 
-// The same for any integrator. `training`: of the guides of its path tracers, if they have any.
+// The same for any integrator. `training`: trains the guides of its path tracers, if they have any.
 RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop, GuideTraining* training = nullptr,

@@ -16,15 +16,15 @@
 
 namespace chromeball {
 
-// One of several renders whose samples together are those of one render.
+// One of several renders whose samples together make up one render's.
 
 struct RenderSettings;
 
 // Without adaptive sampling and guides, the samples of a shard are consecutive ones of the whole
 // render's. Otherwise every shard takes the first samples of the whole render, and learns from them
 // what the whole render would learn: how samples are allotted, and the guides. The first shard
-// keeps these, and of the later samples of a pixel's half, shard k of n keeps the k-th, the
-// (k + n)-th, the (k + 2 n)-th, ...
+// keeps these samples. Shard k of n keeps the k-th, the (k + n)-th, the (k + 2 n)-th, ... of the
+// later samples of a pixel's half.
 struct Shard {
   uint32_t index = 0, count = 1;
   uint32_t samplesOfAll = 0;  // mean per pixel; 0 for a render that is not a shard
@@ -72,7 +72,7 @@ constexpr bool usesEnvironment(IntegratorKind kind) {
   return kind == IntegratorKind::AmbientOcclusion || kind == IntegratorKind::EnvironmentMap;
 }
 
-// Of light samples and bounces (guide_training.h). `Auto` guides if that is worth its time;
+// Guiding of light samples and bounces (guide_training.h). `Auto` guides if that is worth its time;
 // `On` guides light samples wherever that reduces their variance, and bounces always.
 enum class Guiding { Off, On, Auto };
 

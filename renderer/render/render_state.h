@@ -45,7 +45,7 @@ class RenderControl {
   virtual bool wantsPause(const RenderState& state) const = 0;
   // No thread renders meanwhile. The state may be one that cannot be stored.
   virtual void pause(RenderState& state) = 0;
-  // For a thread that watches; null: none.
+  // The result for a thread that watches; null: none.
   virtual LiveResult* live() { return nullptr; }
   // After the last pass, and when the render is stopped; not while the guides are being trained.
   virtual void end(RenderState& state) = 0;
