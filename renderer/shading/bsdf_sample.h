@@ -67,12 +67,12 @@ inline vec3 normalThatReflects(const vec3& normal, const vec3& geometricNormal, 
 
 struct MapLobe {
   Rgb albedo;       // towards the viewer: what it reflects of uniform radiance 1
-  vec3 direction;   // unit: of a diffuse lobe the normal, else where its middle points
+  vec3 direction;   // unit: a diffuse lobe's normal, else where the lobe's middle points
   bool isDiffuse;   // reflects the irradiance
   float roughness;  // perceptual, unless it is diffuse; 0 if it is smooth
 };
 
-// At most as many as a layered material has.
+// The lobes: at most as many as a layered material has.
 class MapLobes {
  public:
   void add(const MapLobe& lobe) {
