@@ -23,7 +23,7 @@ struct Cell {
   double prepareSeconds = 0;          // time to build the strategy, once for all its renders
   double noise = 0;                   // mean of the noise that the renders themselves report
   double invalidSamples = 0;          // sum over the repeats
-  // 1 / (relMse seconds), divided by that of the baseline for the same budget. Times are compared
+  // 1 / (relMse seconds), divided by the baseline's value for the same budget. Times are compared
   // repeat by repeat: strategies alternate, so that a machine whose speed drifts slows all
   // strategies of a repeat alike.
   Estimate efficiency;

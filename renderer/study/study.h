@@ -30,8 +30,8 @@ struct RenderKey {
 };
 inline constexpr const char* kReference = "reference";
 
-// The seed of a render: a hash of its key. Seeds of the reference have the top bit set and those of
-// all other renders do not, so that no render shares a seed with the reference.
+// The seed of a render: a hash of its key. Seeds of the reference have the top bit set, all others
+// do not, so that no render shares a seed with the reference.
 uint64_t seedOf(const RenderKey& key, uint64_t studySeed);
 
 struct Study {
@@ -58,8 +58,8 @@ struct Study {
   std::string identity;
 
   RenderKey referencePart(int part) const;
-  // In the order of rendering. Strategies alternate, so that a machine whose speed drifts does not
-  // favour any of them.
+  // All renders, in the order of rendering. Strategies alternate, so that a machine whose speed
+  // drifts does not favour any of them.
   std::vector<RenderKey> renders() const;
 };
 
@@ -77,9 +77,9 @@ enum class Mode {
   ReflectionOcclusion
 };
 
-// By name: STRATEGY, or STRATEGY+MODE+..., as "importance+regularize+denoise" or
-// "suns+environment-map+ao". The integrators but `path` are such modes, and so are
-// "diffuse-depth:N", "specular-depth:N" and "irradiance-cache:ERROR".
+// A row of the study. Its name is STRATEGY, or STRATEGY+MODE+..., such as
+// "importance+regularize+denoise" or "suns+environment-map+ao". The integrators but `path` are such
+// modes, and so are "diffuse-depth:N", "specular-depth:N" and "irradiance-cache:ERROR".
 struct Row {
   std::string strategy;  // complete name ("median-cut:64")
   IntegratorKind integrator = IntegratorKind::Path;

@@ -128,8 +128,8 @@ std::string luminancePanel(const RowDistribution& row, const AzimuthAxis& azimut
 
 double cdfY(double number) { return kCdfBottom - kPanel * number; }
 
-// From the number on the axis to the curve, and down to the azimuth. The lines of many samples are
-// thinner, so that together they cover no more of the panel.
+// Arrows from the number on the axis to the curve, and down to the azimuth. The lines of many
+// samples are thinner, so that together they cover no more of the panel.
 std::string arrows(const RowDistribution& row, const AzimuthAxis& azimuth) {
   const double crowd = double(row.samples.size());
   const double lineWidth = std::min(1., 24 / crowd), opacity = std::clamp(100 / crowd, 0.3, 0.85);
