@@ -70,8 +70,8 @@ auto placementOf(const Scene& scene, uint32_t instance, RayMask mask) {
   return std::tuple(i.mesh, i.material, mask, columnsOf(i.toWorld.value_or(Transform{})));
 }
 
-// By instance: whether there are enough equal ones without it, more of which would only cost time.
-// Of opaque ones the first is enough; of those that light passes, kMost are kept.
+// For each instance, whether there are enough equal ones without it: more would only cost time. One
+// opaque instance is enough; of instances that light passes, kMost are kept.
 std::vector<bool> redundantInstances(const Scene& scene, const std::vector<int>& uses,
                                      const Accel& accel) {
   constexpr size_t kMost = 8;

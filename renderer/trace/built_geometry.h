@@ -42,10 +42,10 @@ class BuiltGeometry {
 
   RTCSceneTy* newScene() const;
   RTCGeometryTy* newGeometry(int mesh) const;
-  // In world space, of an instance that changes its shape while the shutter is open.
+  // Geometry in world space for an instance that changes its shape while the shutter is open.
   RTCGeometryTy* newMovingGeometry(const Instance& instance) const;
   RTCSceneTy* meshScene(int mesh);
-  // Of instances whose meshes are stored in world space; `mask` by instance, empty: all.
+  // A scene of instances whose meshes are stored in world space. `mask`: by instance; empty: all.
   RTCSceneTy* staticScene(const std::vector<uint32_t>& instances, const std::vector<RayMask>& mask);
 
   // Adds the geometry, which it takes, to the scene.
@@ -66,7 +66,7 @@ class BuiltGeometry {
     bool operator==(const Member&) const = default;
   };
   void releaseStatic();
-  // Without vertices.
+  // Triangles without vertices.
   RTCGeometryTy* newTriangles(int mesh) const;
 
   const Scene& scene_;

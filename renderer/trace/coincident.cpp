@@ -32,8 +32,8 @@ class CoincidentTriangle {
     return rayOffset(floats_[0], floats_[1], floats_[2], vec3(normal_ / area_));
   }
 
-  // Whether a point of the plane lies in the triangle, at least `margin` metres from its edges. Of
-  // two triangles that share an edge, one has the points of the edge.
+  // Whether a point of the plane lies in the triangle, at least `margin` metres from its edges. If
+  // two triangles share an edge, exactly one contains the points of the edge.
   bool contains(const dvec3& point, double margin) const {
     for (int i = 0; i < 3; ++i) {
       const dvec3 &start = corners_[size_t(i)], &end = corners_[size_t((i + 1) % 3)];

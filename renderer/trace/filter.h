@@ -16,7 +16,7 @@ struct Query {
   QueryContext embree;  // first, so that a filter can cast back
   uint32_t key = 0;     // of Accel::intersect()
   vec3 direction{0};
-  // Of a shadow ray:
+  // These are for shadow rays:
   float length = 0;                         // may be infinite
   Rgb transmittance{1};                     // of surfaces
   Rgb opticalDepth{0};                      // of bodies
@@ -39,7 +39,7 @@ bool isCovered(const Scene& scene, const Hit& hit, const vec3& direction, float 
 // Ignores the hit unless isCovered().
 void filterClosest(const RTCFilterFunctionNArguments* arguments);
 
-// Multiplies Query::transmittance by that of the surface; ignores the hit unless it is now 0.
+// Multiplies Query::transmittance by the surface's; ignores the hit unless it is now 0.
 void filterShadow(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace chromeball
