@@ -22,7 +22,7 @@
 namespace chromeball {
 namespace {
 
-// The options of the ambient occlusion that is baked are not those of a render.
+// Baked ambient occlusion has options of its own, not a render's.
 RenderDescription plannedJob(const BakeOptions& a) {
   SceneFile scene = openScene(a.scene);
   if (scene.composite)

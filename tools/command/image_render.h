@@ -28,7 +28,7 @@ class ImageRender {
   ImageRender(const LoadedScene& loaded, bool showsProgress, std::vector<Viewer*> viewers);
 
   // The image, ready to be written except for its state. Ends early if `stop` is set.
-  // `fractionOfAll`: of all work, by that of this image.
+  // `fractionOfAll`: maps the fraction done of this image to the fraction of all work.
   JobResult run(const PreparedScene& prepared, const std::function<double(double)>& fractionOfAll,
                 const std::atomic<bool>& stop);
 

@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// As readImageFile(), readImage() and loadProbe().
+// The same as readImageFile(), readImage() and loadProbe().
 ImageFile openImageFile(const std::filesystem::path& path,
                         IntegerTexels integers = IntegerTexels::Srgb);
 Image openImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb);

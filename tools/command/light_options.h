@@ -22,7 +22,8 @@ struct LightsProbe {
 
   // Throws InputError.
   void checkMask() const;
-  // As a lat-long map; prints warnings, also if the mask leaves no light. Throws InputError.
+  // The probe as a lat-long map; prints warnings, also if the mask leaves no light. Throws
+  // InputError.
   Image load() const { return loadWithFile().latLong; }
   // The same, with the properties of the file.
   LoadedProbe loadWithFile() const;

@@ -59,7 +59,7 @@ StageBands openStage(const RelightOptions& a) {
   return {std::move(file), memoryOf(a) - rest, a.stage};
 }
 
-// At once, as --preview needs it.
+// Reads the stage all at once, as --preview needs it.
 LightStage readStage(const RelightOptions& a) {
   if (a.isOfPhotographs()) return readPhotographsOf(a);
   StageReader file(a.stage);

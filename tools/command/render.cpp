@@ -78,7 +78,7 @@ void writeImages(const RenderDescription& job, const LoadedScene& loaded, const 
     writeText(*stats, jsonText(statistics(loaded, result, seconds), 2) + "\n");
 }
 
-// Of a part of a render, of the files that were loaded; empty for a whole one.
+// The identity of a part of a render, from the files that were loaded; empty for a whole render.
 std::optional<RenderPart> identified(const LoadedScene& loaded) {
   if (!loaded.description.settings.isPart()) return {};
   return RenderPart{renderIdentity(loaded), {}};

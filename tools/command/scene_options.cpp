@@ -83,7 +83,7 @@ constexpr std::string_view kOfBasis[] = {"size",
                                          "progress",
                                          "quiet"};
 
-// Of these, those that vertices do not need.
+// The options among these that vertices do not need.
 constexpr std::string_view kOfPixels[] = {
     "size", "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
     "mis",  "transparent",       "camera-file"};

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxSurfaces = 64;  // that one ray passes
 
-// The first surface along the ray that `stops`, with the hits of those before it passed.
+// The first surface along the ray that `stops`, passing the surfaces before it.
 template <class Stops>
 std::optional<Surface> firstSurface(const Accel& accel, Ray ray, const Stops& stops) {
   const Scene& scene = accel.scene();
@@ -66,7 +66,7 @@ Seen lookThrough(const LoadedScene& loaded, const Accel& accel, const Image& mea
 
 struct Target {
   vec3 direction;                     // unit, or
-  std::optional<vec3> position = {};  // that of a lamp
+  std::optional<vec3> position = {};  // a lamp's
 };
 
 // Directions in proportion to the probe's light.

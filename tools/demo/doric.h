@@ -6,7 +6,7 @@
 
 namespace chromeball::demo {
 
-// From the stylobate to the architrave: a fluted shaft, an echinus and a square abacus.
+// A column from the stylobate to the architrave: a fluted shaft, an echinus and a square abacus.
 struct DoricColumn {
   double height = 10.4, shaft = 9.54;             // of the whole, and of its shaft
   double lowerRadius = 0.95, upperRadius = 0.74;  // to the arrises between the flutes

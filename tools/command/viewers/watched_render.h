@@ -23,7 +23,7 @@ struct NumberedImage {
 
 class WatchedRender {
  public:
-  // Of the render.
+  // Called by the render.
   void begin(const std::string& name);
   void update(double fraction);
   void show(std::shared_ptr<const ImageSoFar> image);
@@ -33,7 +33,7 @@ class WatchedRender {
   // Until the image is sent and the status told, unless no page asks; a few seconds at most.
   void waitUntilSeen();
 
-  // Of the pages. They ask for the status again and again.
+  // Called for the pages, which ask for the status again and again.
   nlohmann::json status();
   NumberedImage image() const;
   void hasSent(uint64_t number);
