@@ -88,7 +88,8 @@ TEST(SlowAlign, NoiseGivesTheErrorThatIsStated) {
     for (int axis = 0; axis < 3; ++axis)
       chiSquare += std::pow(turn[axis] / found.standardErrors[axis], 2);
   }
-  // Of 36 degrees of freedom: 99.9% are between 14 and 72, and the standard errors err by 10%.
+  // With 36 degrees of freedom, 99.9% of values are between 14 and 72, and the standard errors err
+  // by 10%.
   EXPECT_GT(chiSquare, 14 / 1.2);
   EXPECT_LT(chiSquare, 72 * 1.2);
 }

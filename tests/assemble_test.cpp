@@ -45,7 +45,7 @@ std::vector<std::pair<std::string, Image>> probes() {
 
 const Image kNoMask;
 
-// From photographs at these azimuths.
+// A loop of photographs from these azimuths.
 struct Loop {
   std::vector<Image> photographs;
   std::vector<CaptureView> views;
@@ -86,8 +86,8 @@ TEST(SlowAssemble, OneViewIsWrongBehindTheBall) {
   Loop one(probe, 32, BallReflectance(kChrome), {{180, 0}});
   Loop two(probe, 32, BallReflectance(kChrome), {{180, 0}, {90, 0}});
   Assembly alone = assemble(one.views, kSize), both = assemble(two.views, kSize);
-  // Of a cap of radius asin(1 / 32), whose rim crosses texels of pi / height radians: to a quarter
-  // of one all around.
+  // The share of a cap of radius asin(1 / 32), whose rim crosses texels of pi / height radians: to
+  // within a quarter of a texel all around.
   const double rim = std::asin(1 / 32.), quarter = kPiD / kSize.height / 4;
   EXPECT_NEAR(alone.blindShare, 0.5 * (1 - std::cos(rim)), 0.5 * std::sin(rim) * quarter);
   EXPECT_EQ(both.blindShare, 0);

@@ -160,7 +160,7 @@ const std::atomic<bool> kGoesOn = false;
 
 void nothing(double) {}
 
-// The samples of all parts, finished as those of the whole.
+// The samples of all parts, finished like the whole's.
 Image ofParts(const D& whole, const std::vector<D>& parts) {
   const LoadedScene loaded = loadScene(whole);
   std::optional<RenderResult> sum;
@@ -263,8 +263,8 @@ std::optional<D> refused(const Render& r) {
   return conflictIn(d) ? std::optional(d) : std::nullopt;
 }
 
-// Of four repeats, the variance is too uncertain for a test so far in the tail: who fails is asked
-// again, with more.
+// With four repeats the variance is too uncertain for a test so far in the tail: a pair that fails
+// is tested again, with more.
 bool agree(const std::vector<Image>& found, const std::vector<Image>& expected) {
   constexpr int kTests = 500;             // at most
   constexpr double kSignificance = 0.01;  // of all tests together

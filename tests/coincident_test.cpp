@@ -251,7 +251,7 @@ TEST(Coincident, OverlappingBodiesWithFlushFacesAreAFurnace) {
     }
 }
 
-// Any number of surfaces, of which a bounded number is met.
+// Any number of surfaces; a path meets a bounded number of them.
 TEST(Coincident, ManySheetsAreAFurnace) {
   for (const int count : {2, 5, 8, 9, 40}) {
     Scene scene;

@@ -38,7 +38,7 @@ Image photograph(const Probe& probe, double azimuth) {
                       200, kCircle);
 }
 
-// Two photographs, of which the second is exposed twice as long.
+// Two photographs; the second is exposed twice as long.
 struct Photographs {
   TemporaryFolder folder;
   Image map = studio();

@@ -151,7 +151,7 @@ TEST(SlowMerge, OfCropsIsTheWholeImage) {
   expectError({"merge", left, wide, "-o", parts.out / "o.exr"}, "overlaps");
 }
 
-// Large parts are read in bands of rows, of which the last may be smaller.
+// Large parts are read in bands of rows; the last band may be smaller.
 TEST(SlowMerge, OfLargePartsIsTheWholeImage) {
   const Parts parts;
   const auto part = [&](const std::string& name, const Words& more) {

@@ -81,8 +81,8 @@ class CommandTransfer : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// Of an open triangle under a constant probe there is no noise: every path finds the same light,
-// and the other coefficients of the light are 0.
+// An open triangle under a constant probe has no noise: every path finds the same light, and the
+// other coefficients of the light are 0.
 TEST_F(CommandTransfer, ConstantLightOnAnOpenTriangle) {
   for (const auto& [name, count] : {std::pair("sh:2", 9u), std::pair("haar:2", 24u)}) {
     basis(name);
@@ -197,7 +197,7 @@ std::string writeBall(GltfWriter& w) {
 
 using SlowCommandTransfer = CommandTransfer;
 
-// Under light that the basis has in full, what is seen is what a render shows.
+// Under light that the basis represents exactly, the view equals a render.
 TEST_F(SlowCommandTransfer, GlossySurfacesLookAsRendered) {
   GltfWriter ball;
   const std::string model = writeBall(ball);

@@ -129,7 +129,7 @@ TEST_F(SlowCommandConvolve, WritesKtx2) {
   EXPECT_EQ(at<uint64_t>(file, 80) + at<uint64_t>(file, 88), file.size());  // the largest is last
 }
 
-// Prints what ktx-parse finds in a file, as JSON; of each level, the texel right below the middle
+// Prints what ktx-parse finds in a file, as JSON; for each level, the texel right below the middle
 // of each face.
 constexpr const char* kParse = R"(
   import { readFileSync } from 'node:fs';

@@ -111,7 +111,7 @@ TEST(DeltaLights, perfectMirrorsReflectTheProbeAndNoLights) {
 }
 
 // On a nearly perfect mirror, directional lights would show only as bright dots. Up to noise, the
-// image equals that of the unbiased strategy, and a mirror of albedo 1 conserves energy.
+// image equals the unbiased strategy's, and a mirror of albedo 1 conserves energy.
 TEST(DeltaLights, nearMirrorsReflectTheProbe) {
   const Camera camera = Camera::lookAt({1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 0.7f);
   const RenderSettings settings = smallRender(16, 16, 64, 3);

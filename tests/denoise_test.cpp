@@ -23,7 +23,7 @@ constexpr int kWidth = 75, kHeight = 50;  // neither is a multiple of a tile or 
 
 float random(uint64_t i, uint64_t purpose) { return toUnit(uint32_t(hash(i, purpose))); }
 
-// About normal, variance 1.
+// Approximately normal, with variance 1.
 float gauss(uint64_t i, uint64_t purpose) {
   float sum = -6;
   for (uint64_t k = 0; k < 12; ++k) sum += random(i, 100 * purpose + k);

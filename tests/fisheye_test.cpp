@@ -36,8 +36,8 @@ TEST(Fisheye, DirectionToImageAndBack) {
       const dvec2 uv = directionToUv(lens, d);
       const std::optional<dvec3> back = uvToDirection(lens, uv);
       // On the rim, rounding may move it out. There the sine has its maximum if the projection is
-      // orthographic and shows 180 degrees: the image hardly moves, and 1e-16 of it are 1e-8
-      // radians.
+      // orthographic and shows 180 degrees: the image hardly moves, and 1e-16 in it corresponds to
+      // 1e-8 radians.
       if (!back) {
         EXPECT_NEAR(angle, lens.halfAngle(), 1e-9);
         return;

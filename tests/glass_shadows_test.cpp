@@ -50,7 +50,7 @@ Rgb radianceOf(const Scene& scene, const Camera& camera, uint32_t samples = 1) {
       renderScene(scene, camera, black, "importance", smallRender(8, 8, samples, 1)).film.mean());
 }
 
-// From between the floor and a slab above y = 0.5, at the floor.
+// A view from between the floor and a slab above y = 0.5, at the floor.
 Camera underTheSlab() { return Camera::lookAt({0.5f, 0.4f, 0}, {0, 0, 0}, {0, 1, 0}, 0.001f); }
 
 double schlick(double cosine) { return 0.04 + 0.96 * std::pow(1 - cosine, 5); }

@@ -58,7 +58,7 @@ TEST(ViewGrid, InterpolatesBetweenItsDirections) {
     }
 }
 
-// A Lambertian surface has the same radiance towards each node: albedo times that of a white one.
+// A Lambertian surface has the same radiance towards each node: albedo times a white surface's.
 // Each is a mean of `samples` values of Y_k, of a variance below 1.
 TEST(GlossyTransfer, LambertianSurfacesAreDiffuse) {
   const Scene scene = sphereOf(lambert(Rgb(0.5f)));

@@ -101,7 +101,7 @@ std::string complaintOf(json root) {
   return "";
 }
 
-// Values of all types but that of `value`.
+// Values of all types but the type of `value`.
 std::vector<json> valuesUnlike(const json& value) {
   std::vector<json> others;
   for (const char* text : {"null", "true", "\"1\"", "[]", "{}", "0.5", "-1", "4294967296e9"}) {

@@ -66,7 +66,7 @@ TEST(Ground, IsAMatteNodeOfTheScene) {
   EXPECT_LT(box.max.y, 0.5f);  // below what lies on it
 }
 
-// Half of the pixels show other things; the median is that of the ground.
+// Half of the pixels show other things; the median is the ground's.
 TEST(Ground, TheProbesScaleIsThatOfThePlatesMedian) {
   Image plate(30, 20, 3);
   std::vector<size_t> pixels;

@@ -203,7 +203,7 @@ TEST(SlowGuide, AgreesInSurroundings) {
   EXPECT_LT(squared[1], squared[0]);
 }
 
-// At equal samples; guided light samples take up to 1.7 times the time.
+// Compares at equal samples; guided light samples take up to 1.7 times the time.
 TEST(SlowGuide, ReducesTheVarianceInARoom) {
   const Scene scene = room();
   double squared[2] = {0, 0};

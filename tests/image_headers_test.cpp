@@ -82,8 +82,8 @@ TEST(ImageHeaders, RepeatedLinesAreSaidOnce) {
         << message.text;
 }
 
-// Sides beyond 32 and 64 bits.
-// Their names would be those of attributes of the .exr: reserved, of another type, or none.
+// Sides beyond 32 and 64 bits. Their names would be names of attributes of the .exr: reserved, of
+// another type, or none.
 TEST(ImageHeaders, CommentsOfAnHdrAreNoAttributes) {
   const TemporaryFolder folder;
   const std::string path =
@@ -229,7 +229,7 @@ TEST(ImageHeaders, PhotographsAreOfWhatTheirPngStates) {
   const auto expectAs = [&](const std::string& chunks, const char* response) {
     const MergedPhotographs found = merged(chunks, chunks, "");
     EXPECT_EQ(found.responseName, response);
-    // Of two equal pictures each channel has one factor.
+    // For two equal pictures each channel has one factor.
     const Rgb plain = merged("", "", response).image.radiance.rgb(0, 0);
     const Rgb decoded = readImage(saved(folder / "c.png", png(texel, chunks))).rgb(0, 0);
     const Rgb undone = readImage(saved(folder / "c.png", png(texel, ""))).rgb(0, 0);
@@ -293,7 +293,7 @@ TEST(ImageHeaders, AllReadersTurnAlike) {
   }
 }
 
-// Width over height is what the resolution of the height is over that of the width.
+// Width / height equals the vertical / the horizontal resolution.
 TEST(ImageHeaders, PixelsThatAreNotSquareAreSaid) {
   const TemporaryFolder folder;
   const auto said = [&](const std::string& file) {
@@ -327,7 +327,7 @@ TEST(ImageHeaders, PixelsThatAreNotSquareAreSaid) {
         TiffWriter::file({{1, 1, "abc", 2, 3, 8, 1, 1, {{282, 5, {x, 1}}, {283, 5, {y, 1}}}}}),
         part);
   }
-  // On its side.
+  // The picture lies on its side.
   expectSaid(
       TiffWriter::file(
           {{1, 1, "abc", 2, 3, 8, 1, 1, {{274, 3, {6}}, {282, 5, {2, 1}}, {283, 5, {1, 1}}}}}),

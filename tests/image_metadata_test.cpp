@@ -170,7 +170,7 @@ TEST(ImageMetadata, DamagedMetadataOfATiffIsSkipped) {
   EXPECT_EQ(readImage(saved(folder / "b.tif", laden)).texels, plain.texels);
 }
 
-// As an image, as a probe, and as a texture at every location in a model.
+// Read as an image, as a probe, and as a texture at every location in a model.
 TEST(ImageMetadata, DamagedProfilesAreIgnored) {
   const TemporaryFolder folder;
   const Bytes png = inserted(kPng, 8 + 25, chunk("iCCP", Bytes(40)));
@@ -190,7 +190,7 @@ TEST(ImageMetadata, DamagedProfilesAreIgnored) {
   EXPECT_EQ(decodeImage(png, "a").texels8, decodeImage(kPng, "a").texels8);
 }
 
-// A profile that is not applied is said, unless it is known to be that of sRGB.
+// A profile that is not applied is reported, unless it is known to be sRGB's.
 TEST(ImageMetadata, ProfilesThatAreNotAppliedAreNamed) {
   const TemporaryFolder folder;
   const auto isSaid = [&](const std::string& name, const Bytes& bytes,

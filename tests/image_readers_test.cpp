@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers of PNG and JPEG against those of OpenImageIO, on files of every kind that these
-// formats have, whole and truncated. What is missing of a JPEG OpenImageIO makes up, and we refuse.
+// The readers of PNG and JPEG against OpenImageIO's, on files of every kind that these formats
+// have, whole and truncated. OpenImageIO makes up the missing part of a JPEG; we refuse the file.
 #include <gtest/gtest.h>
 
 #include <csetjmp>
@@ -225,7 +225,7 @@ TEST(ImageReaders, TruncatedJpegIsRefused) {
   }
 }
 
-// With all bits of its one scan; of several, others might be missing.
+// A file with all bits of its only scan; if it had several, others might be missing.
 TEST(ImageReaders, JpegWithoutItsEndMarker) {
   const TemporaryFolder folder;
   constexpr size_t kEndMarker = 2;

@@ -109,7 +109,7 @@ TEST(Image, HdrExposureAndOrientationAreApplied) {
   EXPECT_EQ(image.rgb(0, 0), Rgb(0.0625f, 0.5f, 0.0625f));
 }
 
-// "Radiance File Formats", picture files: the first axis is that of the rows in their order.
+// "Radiance File Formats", picture files: the first axis gives the order of the rows.
 TEST(Image, HdrRowsInEachOrder) {
   const TemporaryFolder folder;
   std::string texels;

@@ -155,7 +155,7 @@ TEST(IrradianceCache, GradientsAreDifferences) {
   EXPECT_NEAR(gradient(here.translation).x, perMetre, 0.1f * perMetre);
   EXPECT_NEAR(gradient(here.translation).z, 0, 0.1f * perMetre);
   EXPECT_NEAR(gradient(here.translation).y, 0, 1e-6f);
-  // Of the normal, towards the wall and along it.
+  // The gradient by rotation of the normal, towards the wall and along it.
   const auto turned = [&](const vec3& towards) {
     const vec3 normal = glm::normalize(up + 0.1f * towards);
     const float actual = luminance(recordAt(traced, {0, 1, 0}, normal, kSamples).irradiance);

@@ -149,7 +149,7 @@ TEST(MotionKeys, WarnsOfATurnOfTheCameraThatKeysDoNotShow) {
     EXPECT_TRUE(says(turned(degrees), "the camera ")) << degrees;
 }
 
-// The view with the option alone is that of a camera that turns.
+// With the option alone, the view is the same as for a turning camera.
 TEST(MotionKeys, AStepOfTheOrbitFramesAsTheOrbitDoes) {
   GltfWriter w;
   addTriangle(w);

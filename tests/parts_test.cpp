@@ -155,8 +155,8 @@ TEST(Shard, StoppedAtItsBeginningSaysSo) {
   }
 }
 
-// The variance of a union of adaptive shards is at most 10% above that of one render; the
-// differences to a reference of many images tell it to some percent.
+// The variance of a union of adaptive shards is at most 10% above one render's; the differences to
+// a reference of many images measure it to some percent.
 TEST(SlowShard, UnionOfAdaptiveShardsIsAsGoodAsOneRender) {
   const NamedScene small = threeScenes()[0];
   RenderSettings settings = smallRender(kWidth, kHeight, 128, 4);

@@ -58,7 +58,7 @@ TEST(ProbeFile, ConvertedProbesNameTheirMapping) {
       EXPECT_EQ(mappingName(probe.mapping), mapping);
       EXPECT_EQ(probe.reason, "the file names it");
     }
-  // Of other programs, or of another image.
+  // Mappings named by other programs, or for another image.
   for (const char* text : {"uv", "mirror-ball", ""}) {
     writeImage(folder / "other.exr", OutputImage{{{"", "RGB", sky}}, {{"mapping", text}}});
     EXPECT_EQ(loadProbe(folder / "other.exr").mapping, Mapping(Mapping::LatLong));

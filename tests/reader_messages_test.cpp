@@ -94,7 +94,7 @@ TEST_F(SlowReaderMessages, OfEveryCommandThatReadsAnImage) {
   }
 }
 
-// Of the primaries of a .hdr: the colour is converted, and the user told.
+// If a .hdr states primaries, the colour is converted and the user told.
 TEST_F(SlowReaderMessages, OfPrimaries) {
   std::string contents = fileContents(noted());
   const std::string field = "PRIMARIES=.708 .292 .170 .797 .131 .046 .3127 .329\n";

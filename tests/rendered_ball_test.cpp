@@ -78,8 +78,8 @@ TEST(SlowRenderedBall, ReturnsItsReflectivity) {
     const Image image = renderScene(scene, camera, Probe(constantProbe({8, 4}, Rgb(0.5f))), "bsdf",
                                     smallRender(width, width, 64, 4))
                             .film.mean();
-    // The card spans 1 to 3 m left of the axis at 6 m from the camera: 9.5 to 26.6 degrees, of
-    // which the picture shows up to 14.3.
+    // The card spans 1 to 3 m left of the axis at 6 m from the camera: 9.5 to 26.6 degrees; the
+    // picture shows up to 14.3.
     const PatchMean direct = patchMean(image, {5, 150, 30, 20}, 1e4, "card");
     EXPECT_GT(direct.mean.x, 4);
     // In the ball: the direction (-2, 0, 6), at 18 degrees, is reflected at 9 degrees from the

@@ -26,7 +26,7 @@ struct CommandLimits {
   void apply() const;
 };
 
-// `status`: of waitpid().
+// `status`: from waitpid().
 CommandResult commandResult(int status, const std::string& outPath, const std::string& errorPath);
 
 // Starts the executable itself. If `signalAt` is not empty, sends `signal` as soon as standard

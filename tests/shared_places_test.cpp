@@ -89,8 +89,8 @@ TEST(SharedPlaces, TwoLampsAtOnePlaceGiveTheLightOfOne) {
   expectAsSeen(moving, 1, "moving");
 }
 
-// Of two fronts the one that emits is met, of a front and a back the front, and an opaque surface
-// rather than a sheet.
+// Between two fronts the path meets the one that emits, between a front and a back the front, and
+// an opaque surface rather than a sheet.
 TEST(SharedPlaces, ALampGivesWhatIsSeenOfIt) {
   const Material dark = lambert(Rgb(0));
   Material darkOneSided = dark;
@@ -130,8 +130,8 @@ TEST(SharedPlaces, ALampUnderAFrostedSheetGivesNoInvalidSample) {
   EXPECT_NEAR(meanColor(result.film.mean()).x, 0.9f, 0.1f);
 }
 
-// In a coordinate plane, where coordinates are 0 but those of a node that was turned into it are
-// rounding errors.
+// The coordinates of a triangle in a coordinate plane are 0, but a node that was turned into it has
+// rounding errors instead.
 TEST(SharedPlaces, ALampInACoordinatePlaneIsFlushWithARoundedWall) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lampOf(Rgb(1))), {-1, 0, -1}, {2, 0, 0}, {0, 0, 2});

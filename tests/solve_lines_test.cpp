@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras found from lines along the axes of the scene, and those of fSpy.
+// Cameras found from lines along the axes of the scene, compared with fSpy's.
 #include "scene/solve/solve_camera.h"
 
 #include <fmt/format.h>

@@ -88,7 +88,7 @@ TEST(SlowStitch, TilesOfAPlaceGiveItBack) {
              seen = exactIrradiance(stitched.latLong, normals);
   for (size_t i = 0; i < normals.size(); ++i)
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[i][k] / expected[i][k], 1, 1e-3);
-  const Image texels = resampled(fine, 512, 256);  // means, as those of the stitched probe
+  const Image texels = resampled(fine, 512, 256);  // means, like the stitched probe's
   std::vector<float> differences;
   for (int y = 0; y < texels.height; ++y)
     for (int x = 0; x < texels.width; ++x) {

@@ -32,7 +32,7 @@ TiffImage thumbnail(const std::vector<TiffEntry>& more = {{kNewSubfileType, 4, {
   return {2, 1, std::string(6, '\x7f'), 2, 3, 8, 1, 1, more};
 }
 
-// Of `samples` numbers of 16 bits.
+// A sensor image with `samples` numbers of 16 bits.
 TiffImage sensor(uint16_t photometric, uint16_t samples) {
   return {kWidth,      kHeight, std::string(size_t(kWidth * kHeight * samples * 2), 'x'),
           photometric, samples, 16};
@@ -111,7 +111,7 @@ TEST_F(Tiff, TheFirstFullImageIsRead) {
   refuse({mask}, "a transparency mask alone");
 }
 
-// The orientation is that of the image that is read.
+// The orientation belongs to the image that is read.
 TEST_F(Tiff, EachPageHasItsOrientation) {
   const TiffImage turned = rgb({{kOrientation, 3, {6}}});
   EXPECT_EQ(read({thumbnail(), turned}).image.texels, read({turned}).image.texels);
@@ -331,7 +331,7 @@ TEST_F(Tiff, FilesTooShortForTheirTexelsAreRefused) {
     refuse({image}, "a.tif: cannot be read: the file is too short for 16384 x 8192 texels");
     refuse({thumbnail(), image}, "too short for 16384 x 8192 texels");
   }
-  // Black and white, of which a row takes a bit: 2^17 of 2^15 bits do not fit into 5 kB.
+  // Black and white; a row takes at least a bit: 2^17 rows of 2^15 bits do not fit into 5 kB.
   constexpr uint16_t kCcittFax4 = 4;
   refuse({{1 << 15, 1 << 17, std::string(5000, '\0'), 0, 1, 1, kCcittFax4}}, "too short for");
 }
