@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras found from lines along the axes of the scene, compared with fSpy's.
+// Cameras found from lines along the axes of the scene, and cameras read from fSpy.
 #include "scene/solve/solve_camera.h"
 
 #include <fmt/format.h>
