@@ -128,7 +128,7 @@ struct NormalEquations {
     return scale;
   }
 
-  // In place: L D L^T.
+  // Factorises into L D L^T, in place.
   void factorize() {
     constexpr float kSmallestPivot = 1e-5f;  // for rounding errors where features depend linearly
     for (int j = 0; j < kTerms; ++j) {

@@ -53,7 +53,7 @@ struct Dependence {
 
 std::span<const Dependence> dependences();
 
-// Where a given setting is from, with its name: "--shutter", "FILE:LINE: `camera.shutter`".
+// The origin of a given setting, with its name: "--shutter", "FILE:LINE: `camera.shutter`".
 std::string namedOrigin(const RenderDescription& description, std::string_view setting);
 
 // "--probe-rotation has no effect without a probe", or "FILE:LINE: `probe.rotation` ...", for each

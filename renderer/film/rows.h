@@ -91,7 +91,7 @@ struct TileGrid {
     return {left, top, std::min(kSize, width - left), std::min(kSize, height - top)};
   }
 
-  // In scanline order.
+  // Visits pixels in scanline order.
   template <class Visit>
   void forPixels(size_t tile, const Visit& visit) const {
     const PixelRect rect = rectOf(tile);

@@ -163,7 +163,7 @@ void applyToModels(const Settings& over, SceneFile& file) {
   }
 }
 
-// Before the first key and after the last one constant.
+// The rotation at a time; constant before the first key and after the last one.
 std::vector<double> rotationAt(const std::vector<ProbeTurn>& keys, double seconds) {
   const auto after = std::upper_bound(keys.begin(), keys.end(), seconds,
                                       [](double t, const auto& key) { return t < key.seconds; });

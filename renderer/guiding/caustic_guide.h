@@ -21,7 +21,7 @@ namespace chromeball {
 // 1 / pi at most, a GGX lobe of roughness 0.45 has 2.)
 inline constexpr float kConcentratedPdf = 2;
 
-// Where such a path arrives at a rough surface.
+// The arrival of such a path at a rough surface.
 struct Photon {
   vec3 position, normal;
   vec3 direction;  // unit, towards the last surface that reflected or refracted the light

@@ -90,8 +90,8 @@ class LuminanceField {
 
 // The luminance field divided into blocks of cells that can be sampled separately.
 
-// At most 32 x 16 blocks. All blocks share the running sums along rows of cells and along columns
-// of blocks.
+// A field of at most 32 x 16 blocks. All blocks share the running sums along rows of cells and
+// along columns of blocks.
 class BlockedField {
  public:
   explicit BlockedField(const Probe& probe);

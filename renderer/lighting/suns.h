@@ -26,7 +26,7 @@ namespace chromeball {
 // needs 45% fewer rays for the same noise.
 class SkyDiscs {
  public:
-  // Turned, as a probe.
+  // The discs are turned, like a probe.
   explicit SkyDiscs(const std::vector<Sun>& suns, const Rotation& rotation = {});
 
   bool empty() const { return discs_.empty(); }

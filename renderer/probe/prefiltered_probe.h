@@ -26,7 +26,8 @@ class PrefilteredProbe {
   // W/m^2 on a surface with this unit normal.
   Rgb irradiance(const vec3& normal) const { return kPi * diffuse_.radiance(normal); }
 
-  // In a mirror of this perceptual roughness (alpha = roughness^2); 0 is the probe itself.
+  // The radiance in a mirror of this perceptual roughness (alpha = roughness^2); 0 shows the probe
+  // itself.
   Rgb radiance(const vec3& direction, float roughness) const;
 
  private:

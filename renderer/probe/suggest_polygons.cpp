@@ -108,7 +108,7 @@ std::array<std::vector<Texel>, 2> cut(const Image& map, const std::vector<Texel>
   return parts;
 }
 
-// Where a cut of a candidate changes most light.
+// The candidate whose cut changes most light.
 std::vector<PolygonCandidate>::iterator worstOf(std::vector<PolygonCandidate>& candidates) {
   return std::ranges::max_element(candidates, {}, &PolygonCandidate::unevenFlux);
 }

@@ -35,7 +35,8 @@ class GuideTraining {
   // The settings with the guides, which are empty at first.
   PathSettings guided(PathSettings path) const;
 
-  // Before the first pass. `raysPerSample`: about how many rays a sample of a pixel takes.
+  // To be called before the first pass. `raysPerSample`: the approximate number of rays for a
+  // sample of a pixel.
   void tracePhotons(double raysPerSample);
 
   const LightGuide& lights() const { return lights_; }

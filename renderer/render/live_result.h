@@ -19,12 +19,12 @@ class LiveResult {
   // Reads the pixels of a tile of TileGrid, which nobody changes meanwhile; the totals may change.
   using Read = std::function<void(const RenderResult& result, size_t tile)>;
 
-  // For the thread that watches: `read` gets each tile that has changed since it last got it,
+  // Called by the thread that watches: `read` gets each tile that has changed since it last got it,
   // except tiles in work; at first, all. It gets the rest when the render ends, in a thread of the
   // render. Does nothing before the render begins.
   void update(Read read);
 
-  // For the render. `result` must live until end(); an interrupted render may begin again.
+  // Called by the render. `result` must live until end(); an interrupted render may begin again.
   void begin(const RenderResult& result);
   void end();
   // While it exists, nothing is read: for changes of totals, and of the whole film, which

@@ -135,7 +135,8 @@ class Renderer {
     state_.result = std::move(own);
   }
 
-  // So that every pixel of a shard has a sample of each half; under limits, after some passes.
+  // The least rate for which every pixel of a shard has a sample of each half; under limits, after
+  // some passes.
   float leastRate() const {
     const Shard& shard = settings_.shard;
     if (shard.count == 1) return 0;

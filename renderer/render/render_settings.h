@@ -39,7 +39,7 @@ struct Shard {
   // The mean samples per pixel, of `taken`, that this shard keeps.
   uint32_t kept(uint32_t taken) const;
 
-  // Where the samples are consecutive: the first of a pixel; even, so that both halves have equal
+  // The first of a pixel's samples if they are consecutive; even, so that both halves have equal
   // shares.
   uint32_t first() const { return firstOf(index); }
   // How many samples per pixel the shard takes.
@@ -63,7 +63,7 @@ enum class IntegratorKind {
   EnvironmentMap,
 };
 
-// In the order of IntegratorKind.
+// Names, in the order of IntegratorKind.
 inline constexpr std::array<std::string_view, 4> kIntegratorNames = {
     "path", "direct", "ambient-occlusion", "environment-map"};
 
@@ -96,7 +96,8 @@ struct RenderSettings {
   int width = 800, height = 600;  // of the whole image
   std::optional<Crop> crop;
   Shard shard;
-  // Per pixel, those that a shard repeats included; >= 1; the maximum where a limit below is set.
+  // Number per pixel, including those that a shard repeats; >= 1; the maximum where a limit below
+  // is set.
   uint32_t samples = 256;
   std::optional<double> timeLimit;   // seconds
   std::optional<double> noiseLimit;  // fraction (film/noise.h)
@@ -118,7 +119,7 @@ struct RenderSettings {
   bool regularize = false;  // biased: see path_settings.h; the World needs tables for it
   bool denoise = false;     // the render keeps what denoise() needs (RenderResult::features)
 
-  // Per pixel, of all shards together.
+  // The samples per pixel of all shards together.
   uint32_t samplesOfAll() const { return shard.count > 1 ? shard.samplesOfAll : samples; }
   // Whether the image is put together from several renders (parts/merge.h).
   bool isPart() const { return crop || shard.samplesOfAll > 0; }

@@ -37,9 +37,10 @@ class RenderControl {
  public:
   virtual ~RenderControl() = default;
 
-  // Before the first pass: fills the state from a checkpoint, and returns true, if there is one.
+  // Called before the first pass: fills the state from a checkpoint, and returns true, if there is
+  // one.
   virtual bool restore(RenderState& state) = 0;
-  // After each pass. No thread renders meanwhile.
+  // Called after each pass. No thread renders meanwhile.
   virtual void endPass(const RenderState&) {}
   // Whether pause() shall be called as soon as the tiles in work are finished. Thread-safe.
   virtual bool wantsPause(const RenderState& state) const = 0;
@@ -47,7 +48,8 @@ class RenderControl {
   virtual void pause(RenderState& state) = 0;
   // The result for a thread that watches; null: none.
   virtual LiveResult* live() { return nullptr; }
-  // After the last pass, and when the render is stopped; not while the guides are being trained.
+  // Called after the last pass, and when the render is stopped; not while the guides are being
+  // trained.
   virtual void end(RenderState& state) = 0;
 };
 

@@ -21,7 +21,7 @@ constexpr float lumensPerWatt(LightUnits units) {
   return units == LightUnits::Photometric ? 683.0f : 1.0f;
 }
 
-// Where a punctual light is while the shutter is open (scene/motion.h).
+// The pose of a punctual light while the shutter is open (scene/motion.h).
 struct LampPose {
   vec3 position, direction;
   bool operator==(const LampPose&) const = default;

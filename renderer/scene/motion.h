@@ -80,8 +80,8 @@ inline KeySpan keysAround(size_t keys, float time) {
   return {from, from + 1, position - float(from)};
 }
 
-// Where an instance is. Between two keys its vertices move along straight lines, as Embree moves
-// them. All meshes have the same triangles.
+// The motion of an instance. Between two keys its vertices move along straight lines, as Embree
+// moves them. All meshes have the same triangles.
 struct InstanceMotion {
   struct Key {
     MeshList::Shared mesh;

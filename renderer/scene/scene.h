@@ -25,7 +25,7 @@ struct Instance {
   int node = 0;  // index into Scene::nodeNames
   std::optional<Transform> toWorld;
   bool moves = false;  // at other times of the animation it may have another place or shape
-  // While the shutter is open, from this place and shape; null: it stands still.
+  // Its motion while the shutter is open, from this place and shape; null: it stands still.
   std::shared_ptr<const InstanceMotion> motion = nullptr;
 
   vec3 point(const vec3& p) const { return toWorld ? toWorld->point(p) : p; }

@@ -67,7 +67,7 @@ float handednessOf(const std::optional<Transform>& toWorld) {
           motion.point(triangle.z, span)};
 }
 
-// In world space, with the sign of the bitangent in w; not unit.
+// The tangent in world space, with the sign of the bitangent in w; not unit.
 vec4 interpolatedTangent(const Surface& s, const Instance& instance) {
   const auto tangentOf = [&](const Mesh& mesh, const std::optional<Transform>& toWorld) {
     const vec4 tangent = interpolate(mesh.tangents, s.triangle, s.barycentric);

@@ -72,7 +72,7 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
   }
 }
 
-// In the list of files that were read.
+// Replaces a name in the list of files that were read.
 void replaceFile(const std::optional<std::string>& earlier, const std::optional<std::string>& file,
                  std::vector<std::string>& files) {
   const auto at = earlier ? std::ranges::find(files, *earlier) : files.end();

@@ -29,8 +29,8 @@ struct AutomaticView {
 AutomaticView automaticView(const RenderDescription& job, const Scene& scene,
                             const glm::dvec3& origin);
 
-// Before its `orbit`. Throws InputError for a camera that the model does not have, or a lens of an
-// orthographic one.
+// The camera before its `orbit`. Throws InputError for a camera that the model does not have, or a
+// lens for an orthographic one.
 Camera chooseCamera(const RenderDescription& job, const Scene& scene, const AutomaticView& view);
 
 struct ModelCache;

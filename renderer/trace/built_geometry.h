@@ -20,7 +20,7 @@ namespace chromeball {
 // Which hits call the filter functions (trace/filter.h).
 struct FilterUse {
   std::vector<bool> ofMesh;  // by mesh: whether any instance lets light pass
-  // In the whole scene.
+  // Properties of the whole scene.
   bool any = false, hasAlpha = false, needsMedia = false;
 };
 

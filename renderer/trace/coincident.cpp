@@ -38,7 +38,7 @@ class CoincidentTriangle {
     for (int i = 0; i < 3; ++i) {
       const dvec3 &start = corners_[size_t(i)], &end = corners_[size_t((i + 1) % 3)];
       const bool owns = isBefore(start, end);
-      // In the same order for both triangles, so that the results are exactly opposite.
+      // The ends have the same order for both triangles, so that the results are exactly opposite.
       const dvec3 &from = owns ? start : end, &to = owns ? end : start;
       const double side = glm::dot(glm::cross(to - from, point - from), normal_) / area_;
       const double inwards = owns ? side : -side, least = margin * glm::length(to - from);

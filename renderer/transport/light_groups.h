@@ -57,7 +57,7 @@ struct DirectedLight {
   Rgb throughput;
 };
 
-// Where a path adds what it finds, beside its whole radiance.
+// The sums to which a path adds its light by group, in addition to its whole radiance.
 class GroupSums {
  public:
   // `sums`: one element per group. `scratch` keeps its capacity. `directions`, if not null, gets

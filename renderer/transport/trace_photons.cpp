@@ -174,7 +174,7 @@ class PhotonTracer {
     vec3 emission;
     uint64_t chain;
   };
-  // Until the path leaves the scene or a bounce is not narrow. `target`: null for lamps.
+  // Follows the path until it leaves the scene or a bounce is not narrow. `target`: null for lamps.
   void follow(const Start& start, const Target* target, Random& random, Traced& out) const {
     auto [ray, flux, emission, chain] = start;
     Media media;

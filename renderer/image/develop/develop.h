@@ -10,7 +10,7 @@
 
 namespace chromeball {
 
-// In the order in which they are applied.
+// The settings, in the order in which they are applied.
 struct DevelopSettings {
   std::optional<float> clip;  // R, G and B at most this: an image of low dynamic range, to compare
   std::optional<ThinLens> lens;

@@ -53,7 +53,7 @@ class OpenedImage : public ModuleImage {
     return true;
   }
 
-  // Where 0 is white, of the grey and not of alpha. The library has turned all channels of 8 bits,
+  // Inverts grey, but not alpha, where 0 is white. The library has inverted all channels of 8 bits,
   // and no others.
   void turnGrey(const OIIO::ImageSpec& spec, float* texels) const {
     const size_t channels = size_t(spec.nchannels);

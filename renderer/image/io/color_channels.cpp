@@ -26,8 +26,8 @@ std::vector<std::string_view> segmentsOf(std::string_view name) {
   return segments;
 }
 
-// In lower case: "denoising" and "albedo" of "Denoising Albedo", "crypto" and "object" of
-// "CryptoObject00", "z" and "depth" of "ZDepth".
+// The words of a name, in lower case: "denoising" and "albedo" of "Denoising Albedo", "crypto" and
+// "object" of "CryptoObject00", "z" and "depth" of "ZDepth".
 std::vector<std::string> wordsOf(std::string_view segment) {
   const auto is = [&](size_t i, int (*kind)(int)) {
     return i < segment.size() && kind(static_cast<unsigned char>(segment[i])) != 0;
@@ -63,7 +63,7 @@ Content contentOf(std::string_view segment) {
   // V-Ray's filters are factors of its raw light.
   constexpr std::array kSurfaceWords = {"basecolor", "filter", "wire"};
   constexpr std::array kSurfacePartsOfWords = {"albedo"};
-  // Before "color": "BaseColor", "diffuse_color".
+  // Words before "color": "BaseColor", "diffuse_color".
   constexpr std::array kOfSurfaces = {"base",       "diffuse",      "specular", "wire",
                                       "subsurface", "transmission", "object",   "material",
                                       "surface",    "vertex"};

@@ -10,7 +10,7 @@
 
 namespace chromeball {
 
-// Above 0 and finite; nullopt where the file does not tell.
+// Values are above 0 and finite; nullopt if the file does not state them.
 struct Exif {
   std::optional<double> exposureTime;  // seconds
   std::optional<double> aperture;      // f-number

@@ -39,7 +39,8 @@ class ExrRowsWriter {
   // The next rows, from the top down: images of one size, which have the layout's channels in turn.
   void write(std::span<const Image* const> images);
 
-  // After the last row. `state`: what else the file holds (exr_state.h); may be empty.
+  // To be called after the last row. `state`: further contents of the file (exr_state.h); may be
+  // empty.
   void commit(const std::function<void(Archive&)>& state = {});
 
   // What writing takes besides the images, at most. Bytes.

@@ -16,7 +16,7 @@
 
 namespace chromeball {
 
-// In the byte order of the machine, which is little-endian (x86-64).
+// A block in the byte order of the machine, which is little-endian (x86-64).
 struct ExrStateBlock {
   uint64_t length, checksum;
 };

@@ -39,8 +39,8 @@ struct ImageioModule {
 ImageioModule loadImageioModule() {
   const fs::path folder = ownFolder();
   std::string problem;
-  // Beside this code; where the installed library is, seen from the installed command; by the
-  // system's search.
+  // Looks beside this code; where the installed library is, seen from the installed command; and in
+  // the system's search path.
   for (const fs::path& path : {folder / kModuleName, folder / CHROMEBALL_BIN_TO_LIB / kModuleName,
                                fs::path(kModuleName)}) {
     if (path.has_parent_path() && !fs::exists(path)) continue;

@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// Before the EXIF block in its segment of a JPEG.
+// Comes before the EXIF block in its segment of a JPEG.
 inline constexpr std::string_view kExifName("Exif\0\0", 6);
 
 // The EXIF block (exif.h), a part of `file`; empty if there is none.

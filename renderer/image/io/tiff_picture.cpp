@@ -42,7 +42,7 @@ enum Photometric {
   kLinearRaw = 34892
 };
 
-// In the order of the pages, each before those below it.
+// The directories in the order of the pages, each page before those below it.
 std::vector<uint64_t> directoriesOf(const TiffBlock& tiff) {
   constexpr size_t kMost = 256;
   std::vector<uint64_t> found;

@@ -15,7 +15,7 @@ namespace chromeball {
 
 // A circle in a photograph.
 
-// In pixels, x right and y down from the top left corner of the image; texel (x, y) covers
+// A circle in pixels, x right and y down from the top left corner of the image; texel (x, y) covers
 // [x, x + 1) x [y, y + 1).
 struct Circle {
   glm::dvec2 centre;
@@ -62,7 +62,7 @@ class PhotographDisc {
   const Image& mask_;
 };
 
-// Where a photograph of a ball was taken from.
+// The position from which a photograph of a ball was taken.
 
 // Seen from the ball (or, for a lens, opposite to where it looks), in degrees: azimuth 0 is +Z, 90
 // is +X; elevation 90 is +Y. The camera stands upright: its right is horizontal.

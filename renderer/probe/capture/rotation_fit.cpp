@@ -206,7 +206,7 @@ std::vector<float> gaussian(double sigma, int largest) {
   return weights;
 }
 
-// Along the rows by 1 / sin(theta) texels, then along the meridians, over the poles, by one.
+// Blurs along the rows by 1 / sin(theta) texels, then along the meridians, over the poles, by one.
 Image blurred(const Image& map) {
   const int width = map.width, height = map.height;
   Image along(width, height, 3), out(width, height, 3);

@@ -61,7 +61,8 @@ struct KeptShares {
 
 struct RelitStage {
   Image picture;  // with the scene's own light
-  // Where not all is kept: shares of numbers that are zeros, and relativeDifference() of the sums.
+  // If not all numbers are kept: shares of numbers that are zeros, and relativeDifference() of the
+  // sums.
   double zeros = 0, lightZeros = 0, error = 0;
 };
 

@@ -171,7 +171,7 @@ CameraErrors errorsOf(const FoundByLines& found, const CameraKnowledge& known, s
   return errors;
 }
 
-// Where the ground at y = -1 is seen from the origin in this direction.
+// The point of the ground at y = -1 that is seen from the origin in this direction.
 dvec3 onGround(const dvec3& direction, const std::string& location) {
   if (!(direction.y < -1e-6))
     throwInput("{}: is not below the horizon; it should show a point of the ground, y = 0",

@@ -110,7 +110,7 @@ RowDistribution rowDistribution(const Probe& probe, const Importance& importance
     found.luminances.push_back(double(luminance(texel)));
     sums.push_back(within += TexelPdf(weights, column).integral());
   }
-  // Also the sum of the integrals over all texels.
+  // This is also the sum of the integrals over all texels.
   const double all = std::accumulate(weights.begin(), weights.end(), 0.);
   if (!(all > 0))
     throwInput("{}: nothing is sampled in row {}, at an elevation of {:.4g} degrees: it is black",

@@ -14,7 +14,7 @@
 namespace chromeball {
 namespace {
 
-// In pixels.
+// Sizes in pixels.
 constexpr double kPlotLeft = 72, kWidth = 864, kRight = 24, kPlotTop = 46, kPanel = 190,
                  kPanelGap = 26;
 constexpr double kCdfTop = kPlotTop + kPanel + kPanelGap, kCdfBottom = kCdfTop + kPanel;
