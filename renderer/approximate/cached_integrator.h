@@ -34,10 +34,10 @@ class CachedIntegrator : public Integrator {
   const IrradianceCache& cache_;
 };
 
-// Fills an irradiance cache with what one image needs.
+// Fills an irradiance cache with the records that one image needs.
 
-// Whether records serve the diffuse lobes of a material. Those of a body of glass are path traced
-// together with what the glass transmits.
+// Whether records serve the diffuse lobes of a material. The diffuse lobes of a body of glass are
+// path traced, together with the light that the glass transmits.
 inline bool hasRecords(const Material& material) { return !material.unlit && !material.isBody(); }
 
 // Adds records where the camera sees diffuse surfaces that the cache does not cover: at the centres

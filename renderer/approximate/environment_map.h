@@ -52,7 +52,7 @@ class EnvironmentLight {
 // Transmitted light is never blocked.
 class EnvironmentMapIntegrator : public Integrator {
  public:
-  // All arguments must outlive this. `lighting`: what the camera sees behind the scene.
+  // All arguments must outlive this. `lighting`: gives what the camera sees behind the scene.
   EnvironmentMapIntegrator(const World& world, const LightSource& lighting,
                            const EnvironmentLight& environment, const PathSettings& settings,
                            const Occlusion& occlusion);

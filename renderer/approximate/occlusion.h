@@ -42,9 +42,9 @@ SkyRay uniformSkyRay(const World& world, const Surface& surface, const vec3& nor
 // Layers that need rays of their own at the first surface: ambient occlusion, bent normals (HDRI
 // book, section 9.8.2) and irradiance (figure 9.38c).
 
-// Another integrator, which also fills these layers of FirstHit, one ray or path each a sample. The
-// picture, its estimate of the light beyond the limits of depth, and what guides learn from it are
-// those without them.
+// Another integrator, which also fills these layers of FirstHit, one ray or path each a sample.
+// They change neither the picture, nor its estimate of the light beyond the limits of depth, nor
+// what guides learn.
 //   ambientOcclusion  an estimate of 1 / pi integral of V cos, V the visibility of the sky
 //   unoccluded        of the vector integral of V cos (or of V) times the direction
 //   irradiance        pi times the radiance of a white Lambertian surface in the place of the first

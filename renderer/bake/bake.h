@@ -20,7 +20,7 @@ inline constexpr const char* kBakedLightNames[] = {"irradiance", "ambient-occlus
 
 class PointLight {
  public:
-  // The tracer must outlive this. `distance`: what is farther away does not occlude, metres.
+  // The tracer must outlive this. `distance`: surfaces farther away do not occlude, metres.
   PointLight(const PathTracer& tracer, BakedLight what, float distance)
       : tracer_(tracer), what_(what), distance_(distance) {}
 

@@ -35,10 +35,10 @@ std::vector<Rgb> filteredLight(const std::vector<BakePoint>& points, const BakeR
 
 // Fills the texels of a page that have no light of their own.
 
-// Within the place of each chart: ring by ring the mean of the neighbours that are filled, so that
-// filtering across the edge of a chart, and around points inside of bodies, sees the chart's own
-// light. A place without any light is black; the rest of the page has the mean of its light.
-// `isBaked`: by texel.
+// Within the place of each chart, fills texels ring by ring with the mean of their filled
+// neighbours, so that filtering across the edge of a chart, and around points inside of bodies,
+// sees the chart's own light. A place without any light is black; the rest of the page has the mean
+// of its light. `isBaked`: by texel.
 void fillPage(Image& page, std::vector<uint8_t> isBaked, const Atlas& atlas);
 
 }  // namespace chromeball

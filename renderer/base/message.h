@@ -27,7 +27,7 @@ struct Message {
 
 using Messages = std::vector<Message>;
 
-// Many messages of a kind as one.
+// Merges many messages of a kind into one.
 
 // The messages for a terminal: where more than three differ only in numbers and in quoted names,
 // only the first, with a count of the others.

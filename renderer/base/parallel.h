@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loops on all threads, and values that each thread has its own copy of. An exception in a loop's
-// body ends the loop. The code behind is oneTBB's, which parallel.cpp alone includes: its templates
-// take long to compile.
+// body ends the loop. The implementation is oneTBB's, which only parallel.cpp includes: its
+// templates take long to compile.
 #pragma once
 
 #include <algorithm>

@@ -35,7 +35,7 @@ struct PlateScale {
 std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
                                    int width, int height);
 
-// The scale with which a matte ground of this reflectance has the median radiance of the plate: per
+// The scale at which a matte ground of this reflectance has the median radiance of the plate: per
 // channel pi L / (reflectance E), with E the irradiance of the ground by the probe with scale 1,
 // W/m^2. Medians, since other things may stand on the ground. `pixels` not empty; E and the
 // reflectance above 0.

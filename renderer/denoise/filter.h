@@ -17,7 +17,7 @@ struct Component {
   RgbPlanes variance;  // of the mean of both halves
 };
 
-// What weights[h] are computed from: half h.
+// The input of weights[h]: half h.
 using HalfGuides = std::array<NoisyPlanes, 2>;
 
 HalfGuides guidesOf(const Component& component);
@@ -42,7 +42,7 @@ FilteredHalves filterHalves(const Component& component, const HalfGuides& guides
                             const std::array<int, kBandwidths>& powers, int averagePower,
                             const std::atomic<bool>& stop);
 
-// Limits pixels that hold so much light that a filter would turn them into bright spots.
+// Limits pixels with so much light that a filter would turn them into bright spots.
 
 // Limits a pixel of one half of the samples to the light of the 5 x 5 pixels around it in the other
 // half: if the sum of its squared channels exceeds theirs, it is scaled down to their sum. Rare

@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// None; a regression of narrow or wide bandwidth; an average.
+// No filter; a regression of narrow or wide bandwidth; an average.
 enum class FilterKind { None, Narrow, Wide, Average };
 
 // An image, and unbiased but noisy estimates of the squared errors of its pixels: squared bias and

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What cannot be combined, and what has no effect alone: two tables, from which checks, messages
-// and documentation are made.
+// Settings that cannot be combined, and settings that have no effect alone: two tables, from which
+// checks, messages and documentation are made.
 #pragma once
 
 #include <optional>
@@ -28,10 +28,10 @@ struct Conflict {
 
 std::span<const Conflict> conflicts();
 
-// The first one in a description; null: none.
+// The first conflict in a description; null: none.
 const Conflict* conflictIn(const RenderDescription& description);
 
-// Throws InputError "SETTING'S ORIGIN: WHY" for the first one.
+// Throws InputError "SETTING'S ORIGIN: WHY" for the first conflict.
 void checkCapabilities(const RenderDescription& description);
 
 // What a description's files contain, as far as settings depend on it.
@@ -57,7 +57,7 @@ std::span<const Dependence> dependences();
 std::string namedOrigin(const RenderDescription& description, std::string_view setting);
 
 // "--probe-rotation has no effect without a probe", or "FILE:LINE: `probe.rotation` ...", for each
-// setting that was given and has none.
+// setting that was given and has no effect.
 std::vector<std::string> idleSettings(const RenderDescription& description,
                                       const SceneContents& contents);
 

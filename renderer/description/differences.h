@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a render must be made again when its description changes.
+// The parts of a render that must be made again when its description changes.
 #pragma once
 
 #include <set>
@@ -9,13 +9,13 @@
 
 namespace chromeball {
 
-// What is in memory differs if it is another object: hashes of a large scene would take as long as
-// a frame.
+// Data in memory count as different if they are another object: hashes of a large scene would take
+// as long as a frame.
 class Differences {
  public:
   Differences(const RenderDescription& a, const RenderDescription& b);
 
-  // Nothing of the models and of what else is in the scene.
+  // Whether nothing of the models and of the rest of the scene differs.
   bool keepScene() const;
   bool inProbe() const;
   bool inLighting() const;  // the way of sampling the light

@@ -19,7 +19,7 @@ inline std::string elementName(std::string_view array, size_t index) {
 class Origins {
  public:
   void set(const std::string& name, const std::string& location) { locations_[name] = location; }
-  // All of the others; they take precedence.
+  // Adds all of the others; they take precedence.
   void add(const Origins& others) {
     for (const auto& [name, location] : others.locations_) set(name, location);
   }

@@ -57,7 +57,7 @@ class Film {
   // films before several threads add or read parts of them.
   bool isWeighed() const { return !early_.empty(); }
   void beWeighed() { early_.resize(pixels_.size()); }
-  // Takes these pixels of a film of the same size, weighed as this one.
+  // Takes these pixels from a film of the same size, weighed like this one.
   void copyPixels(const Film& from, const PixelRect& rect);
   Film part(const PixelRect& rect) const;
   void archive(Archive& a, Rows rows);

@@ -63,8 +63,8 @@ class LayerFilm {
   std::vector<glm::dvec3> values_;  // [pixel][half][layer]
 };
 
-// What a denoiser reads besides the image: direct light and the first surface, with FirstHit::seen
-// as its albedo, as the means of the two halves of each pixel's samples (Film).
+// The input of a denoiser besides the image: direct light and the first surface, with
+// FirstHit::seen as its albedo, as the means of the two halves of each pixel's samples (Film).
 
 class FeatureFilm {
  public:
@@ -73,7 +73,7 @@ class FeatureFilm {
 
   bool empty() const { return pixels_.empty(); }
 
-  // A sample whose radiance is `radiance`. Thread-safe for different pixels.
+  // Adds a sample whose radiance is `radiance`. Thread-safe for different pixels.
   void add(int x, int y, int half, const FirstHit& first, const Rgb& radiance);
   // The same as Film::weigh().
   void weigh(double weight);

@@ -35,7 +35,7 @@ struct PixelErrors {
 // background).
 std::vector<glm::dvec4> squaredStandardErrors(const PixelErrors& errors);
 
-// Red, green and blue of such estimates as an image; NaN and infinities stay.
+// The red, green and blue components of such estimates as an image; NaN and infinities stay.
 Image varianceImage(const std::vector<glm::dvec4>& squaredErrors, int width, int height);
 inline Image varianceImage(const PixelErrors& errors) {
   return varianceImage(squaredStandardErrors(errors), errors.width, errors.height);

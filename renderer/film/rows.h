@@ -12,7 +12,7 @@ namespace chromeball {
 struct Rows {
   int begin = 0, count = 0;
 
-  // What a list with `perRow` items for each row of the image has for these rows.
+  // The items for these rows, of a list with `perRow` items for each row of the image.
   template <class T>
   std::span<T> of(std::vector<T>& items, size_t perRow) const {
     return std::span(items).subspan(size_t(begin) * perRow, size_t(count) * perRow);
@@ -33,7 +33,7 @@ struct PixelRect {
     }
   }
 
-  // The items of these pixels alone.
+  // Only the items of these pixels.
   template <class T>
   std::vector<T> of(const std::vector<T>& items, int across, size_t perPixel = 1) const {
     std::vector<T> part;
@@ -48,7 +48,7 @@ struct PixelRect {
   }
 };
 
-// Some megabytes of sums each.
+// Each band has some megabytes of sums.
 struct Bands {
   int width, height;
 

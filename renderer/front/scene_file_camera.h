@@ -20,7 +20,7 @@ void readCameraFile(const std::string& path, SceneFile& scene);
 
 // Writes cameras to files with a section [camera], which scene files name.
 
-// Atomically, with a comment line for each of `comments`. Throws RunError.
+// Writes atomically, with a comment line for each of `comments`. Throws RunError.
 void writeCameraFile(const std::string& path, const SolvedCamera& camera,
                      const std::vector<std::string>& comments);
 

@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// A frame is a still, with settings that say when it is and where the camera has turned to.
+// A frame is a still, with settings for its time and for the turn of the camera.
 struct SequenceFrame {
   int number;
   SceneFile scene;  // with the frame's number in the names of output files

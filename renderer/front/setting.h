@@ -71,7 +71,7 @@ struct Setting {
   Effect effect = Effect::Image;
   bool renderOnly = false;  // not an option of `chromeball compare`, which varies or ignores it
 
-  // "render.samples"; the option if there is no key.
+  // The name: "render.samples"; the option if there is no key.
   std::string name() const;
 };
 

@@ -81,7 +81,7 @@ struct LightRecord {
 class GuideRegion {
  public:
   GuideRegion() = default;
-  // Learns the tree, and which fraction of light samples the strategy keeps.
+  // Learns the tree, and the fraction of light samples that the strategy keeps.
   explicit GuideRegion(std::span<const LightRecord> records);
 
   bool isGuided() const { return strategyFraction_ < 1; }

@@ -32,7 +32,7 @@ std::optional<glm::dmat3> toRec709(const Chromaticities& space);
 // Converts the first three channels.
 void convertColor(Image& image, const glm::dmat3& matrix);
 
-// That the colour of a file is converted to Rec. 709 from these primaries.
+// The note that the colour of a file is converted to Rec. 709 from these primaries.
 Message conversionNote(const std::filesystem::path& path, const Chromaticities& from);
 
 }  // namespace chromeball

@@ -39,8 +39,8 @@ struct Image {
 // requested size is returned unchanged.
 Image resampled(const Image& image, int width, int height);
 
-// The image as it is to be seen, of one that is stored with this orientation (EXIF and TIFF, tag
-// 274: 1 to 8; 6 is to be turned clockwise). Others leave it as it is.
+// The image as it is to be seen, from an image stored with this orientation (EXIF and TIFF, tag
+// 274: 1 to 8; 6 is to be turned clockwise). Other numbers leave it unchanged.
 Image oriented(Image stored, int orientation);
 
 }  // namespace chromeball

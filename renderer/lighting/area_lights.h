@@ -34,7 +34,7 @@ class LightAreas {
 
   const std::vector<AreaLight>& lights() const { return lights_; }
 
-  // What all lights together have in a direction.
+  // The sum over all lights in a direction.
   struct Found {
     Rgb radiance{0};
     float density = 0;  // sum of 1 / solid angle: the pdf of one direction in each light

@@ -95,7 +95,7 @@ class ShownLights : public LightSource {
   Rgb ambient_;
 };
 
-// Lights of no extent as lights to show, turned.
+// Turns lights of no extent into lights to show, rotated.
 std::vector<AreaLight> shownLights(const Constellation& lights, const Rotation& rotation);
 
 }  // namespace chromeball

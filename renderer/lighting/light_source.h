@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interface of light sources: the light of a probe, in any way of sampling it, and what else
-// lights a scene.
+// The interface of light sources: the light of a probe, sampled in any way, and all other light of
+// a scene.
 #pragma once
 
 #include <cmath>
@@ -50,7 +50,7 @@ struct DirectionSample {
   LightEnd end{};
 };
 
-// Light of a probe, as a strategy samples it, or of what a scene has besides (scene_sources.h):
+// Light of a probe, as a strategy samples it, or of a scene's other sources (scene_sources.h):
 // lamps and emitting surfaces, which override less, and suns.
 class LightSource {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The optics of a camera on a linear image, before tone mapping (HDRI book, section 9.2.5).
+// Applies the optics of a camera to a linear image, before tone mapping (HDRI book, section 9.2.5).
 #pragma once
 
 #include <optional>

@@ -55,7 +55,8 @@ class GaussianLine {
   size_t work_ = 1;
 };
 
-// Images beyond their borders: mirrored at the edge of the outermost pixel, again and again.
+// Continues images beyond their borders: mirrored at the edge of the outermost pixel, again and
+// again.
 
 // The pixel of [0, n) that mirrors show at `i`: ... 1 0 | 0 1 ... n-1 | n-1 n-2 ... The period is
 // 2n. A symmetric filter of sum 1 keeps the sum of an image that continues like this.

@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// How an image lies in the view of its camera.
+// The place of an image in the view of its camera.
 
 // An image may be a part of the whole picture, whose middle the axis of the camera passes.
 struct ViewFrame {

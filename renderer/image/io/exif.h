@@ -23,8 +23,8 @@ struct Exif {
 // if the file cannot be read.
 Exif readExif(const std::filesystem::path& path);
 
-// How the image of a JPEG, PNG or TIFF is stored (image.h), 1 to 8; 1 if the file does not
-// tell.
+// How the image of a JPEG, PNG or TIFF is stored (image.h), 1 to 8; 1 if the file does not state
+// it.
 int exifOrientation(std::span<const uint8_t> file);
 
 // Whether the EXIF of a JPEG, PNG or TIFF states a colour space other than sRGB: cameras that are

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An open OpenEXR file: what the readers of whole images and of bands of rows share.
+// An open OpenEXR file, shared by the readers of whole images and of bands of rows.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class ExrInput {
  public:
   enum class Numbers { Half, Float, Integer, Mixed };  // of the channels
 
-  // `maxNumbers`: that the image may have.
+  // `maxNumbers`: the most that the image may have.
   ExrInput(const std::filesystem::path& path, uint64_t maxNumbers);
   ~ExrInput();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a PNG says of its colour (ISO/IEC 15948, 11.3.3; cICP: third edition), for images of light;
-// textures of models ignore it (glTF 2.0, 3.8.2).
+// The colour space that a PNG states (ISO/IEC 15948, 11.3.3; cICP: third edition), for images of
+// light; textures of models ignore it (glTF 2.0, 3.8.2).
 #pragma once
 
 #include <cstdint>

@@ -21,7 +21,7 @@ namespace chromeball {
 using Matrix44 = std::array<float, 16>;
 using Metadata = std::map<std::string, std::variant<std::string, int, float, double, Matrix44>>;
 
-// That of this name, whatever its type; nullopt if there is none, or a text or a matrix.
+// The number with this name, whatever its type; nullopt if there is none, or a text or a matrix.
 std::optional<double> metadataNumber(const Metadata& metadata, const std::string& name);
 
 // OpenEXR's attribute of probes in Metadata, and its values (ImfEnvmap.h).
@@ -39,7 +39,7 @@ enum class IntegerTexels {
 // The encoding that a file of integers states; Other: neither of the two.
 enum class Transfer { Srgb, Linear, Other };
 
-// The position of an image's first pixel in another image, and the size of that, which need not
+// The position of an image's first pixel in another image, and that image's size, which need not
 // contain the image.
 struct Placement {
   int x, y, width, height;
@@ -63,7 +63,7 @@ struct ImageFile {
   Messages messages = {};  // what was chosen, or was not understood; each "FILE: ..."
 };
 
-// The attributes alone, of an .exr.
+// Only the attributes of an .exr.
 Metadata readExrMetadata(const std::filesystem::path& path);
 
 ImageFile readImageFile(const std::filesystem::path& path,

@@ -24,8 +24,8 @@ class TexelFile {
  public:
   using Texel8 = std::array<uint8_t, 4>;
 
-  // The cache holds `cacheBytes` of tiles, and never less than kMinCacheBytes. Besides, each thread
-  // that reads holds on to at most kBytesPerThread. Throws RunError if the file cannot be created.
+  // The cache holds `cacheBytes` of tiles, and never less than kMinCacheBytes. In addition, each
+  // reading thread holds at most kBytesPerThread. Throws RunError if the file cannot be created.
   explicit TexelFile(size_t cacheBytes);
   ~TexelFile();
   TexelFile(const TexelFile&) = delete;
@@ -33,8 +33,8 @@ class TexelFile {
 
   static constexpr size_t kMinCacheBytes = 10 << 20, kBytesPerThread = 1 << 20;
 
-  // Appends an image of width x height texels; returns its index. Not while texels are read. Throws
-  // RunError if the file cannot be written.
+  // Appends an image of width x height texels; returns its index. Not to be called while texels are
+  // read. Throws RunError if the file cannot be written.
   int add(int width, int height, const std::vector<Texel8>& texels);
   int add(int width, int height, const std::vector<vec4>& texels);
 

@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// What the directories say, not the image. Bytes beyond the end read as 0. Offsets are from the
-// begin of the block.
+// The contents of the directories, not of the image. Bytes beyond the end read as 0. Offsets are
+// from the begin of the block.
 class TiffBlock {
  public:
   explicit TiffBlock(std::span<const uint8_t> bytes)
@@ -51,10 +51,10 @@ class TiffBlock {
 };
 
 // The checksums of a TIFF's strips and tiles that are compressed by Deflate. libtiff stops at the
-// last texel, before the checksum, and has no function that goes on.
+// last texel, before the checksum, and has no function to continue.
 
 // Inflates the blocks of the first image (RFC 1950). Throws std::runtime_error if one is damaged. A
-// block without its end, as flushed streams are, has no checksum; texels that it lacks are the
+// block without its end, such as a flushed stream, has no checksum; texels that it lacks are the
 // decoder's to find. Takes time in proportion to the file and its image: hostile blocks, which
 // overlap or inflate to more, are left unverified beyond that.
 void checkDeflate(std::span<const uint8_t> tiff);

@@ -28,8 +28,8 @@ struct IrradianceSpheres {
   std::optional<Rgb> ambient;  // radiance from all directions, part of `lights`
 };
 
-// What the difference is multiplied by in the picture: the power of two, from 1 to 1024, at which
-// it is as large as can be shown.
+// The factor of the difference in the picture: the power of two, from 1 to 1024, that makes it as
+// large as can be shown.
 double differenceGain(const IrradianceSpheres& spheres);
 
 // White Lambertian spheres in display-linear colours (Madsen et al. 2003, Figs. 2, 3 and 5 to 7;
