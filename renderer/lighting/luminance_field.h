@@ -10,8 +10,8 @@
 namespace chromeball {
 
 // w = max(luminance - offset, 0) x sin(theta) at the corners of the probe's cells, interpolated
-// bilinearly between them; with offset 0 positive wherever the radiance is. The corresponding pdf
-// over solid angle is w / (integral of w over the map, in cells, x jacobian x sin(theta)).
+// bilinearly between them; with offset 0 it is positive wherever the radiance is. The corresponding
+// pdf over solid angle is w / (integral of w over the map, in cells, x jacobian x sin(theta)).
 class LuminanceField {
  public:
   explicit LuminanceField(const Probe& probe, float offset = 0)
@@ -114,7 +114,7 @@ class BlockedField {
     return field_.at(direction, p);
   }
 
-  // Factor from a point's weight to its pdf over solid angle, when sampling the whole field.
+  // The factor from a point's weight to its pdf over solid angle, when sampling the whole field.
   float scale() const { return scale_; }
 
   // 16 directions spread over a block.

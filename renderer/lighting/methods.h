@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of lighting methods: those that sample a probe, and those that replace it by
+// The table of lighting methods: methods that sample a probe, and methods that replace it by
 // directional lights.
 #pragma once
 
@@ -60,7 +60,7 @@ struct LightingMethod {
     bool fitsAmbient = false, takesMaxError = false, takesLevels = false;
     // The irradiances sum to the map's radiance x solid angle, channel by channel.
     bool keepsEnergy = false;
-    // The regions that the same request's lights stand for; empty: it has none.
+    // The regions that the same request's lights stand for; empty: the method has none.
     std::function<LightRegions(const Image& latLong, const LightRequest&)> regions;
   } lights;
 };

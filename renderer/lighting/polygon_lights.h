@@ -23,8 +23,8 @@ struct PolygonLight {
 // against BSDF samples. Either way energy is counted once.
 class PolygonLights : public LightSource {
  public:
-  // `lights` is not empty. `hidden`: the map minus that without the illums, which the camera and
-  // mirrors see; unrotated.
+  // `lights` is not empty. `hidden`: the map of the illums, which only the camera and mirrors see:
+  // the whole map minus the map without the illums; unrotated.
   PolygonLights(const std::vector<PolygonLight>& lights, const Image& hidden,
                 const Rotation& rotation);
 

@@ -13,7 +13,7 @@
 namespace chromeball {
 
 struct SceneSources {
-  // One for each kind of source that occurs in the scene, which must outlive this.
+  // Makes one source for each kind that occurs in the scene, which must outlive this.
   explicit SceneSources(const Scene& scene);
 
   std::vector<std::unique_ptr<const LightSource>> all;
@@ -46,7 +46,7 @@ class SceneSuns : public LightSource {
   std::vector<size_t> seen_;        // indices of the visible ones
 };
 
-// Constant radiance from all directions, as light lists have it (lighting/export/light_file.h).
+// Constant radiance from all directions, as in light lists (lighting/export/light_file.h).
 
 // Found by BSDF samples only, which for constant radiance are as good as light samples.
 class AmbientLight : public LightSource {
@@ -65,7 +65,7 @@ class AmbientLight : public LightSource {
   AmbientLamp lamp_;
 };
 
-// Light of several sources: a probe's strategy, and what a scene has besides its probe.
+// Light of several sources: a probe's strategy, and the other sources of a scene.
 
 // Takes the samples of every part. Radiances and pdfs of all parts are added in each direction, so
 // that all samples are combined by the balance heuristic (Veach 1997). It can be guided if the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rotations of an environment, as a probe's.
+// Rotations of an environment, such as a probe.
 #pragma once
 
 #include <vector>
@@ -63,8 +63,8 @@ Rotation between(const Rotation& from, const Rotation& to, double t);
 
 // Rotations: spread evenly, and by a vector.
 
-// So many rotations with no large gap between them: a super-Fibonacci spiral of unit quaternions
-// (Alexa 2022).
+// The given number of rotations with no large gap between them: a super-Fibonacci spiral of unit
+// quaternions (Alexa 2022).
 std::vector<glm::dmat3> spreadRotations(int count);
 
 // The rotation about `axis` by its length in radians.

@@ -62,7 +62,7 @@ inline constexpr int kPerVertex = 8;
 // Deeper vertices contribute too little to profit from stratification; they use independent random
 // numbers.
 inline constexpr int kTabulatedVertices = 6;
-// How many dimensions a table needs for paths of so many vertices.
+// The number of dimensions that a table needs for paths of so many vertices.
 constexpr int tabulated(int vertices) {
   return kVertex + kPerVertex * std::clamp(vertices, 1, kTabulatedVertices);
 }

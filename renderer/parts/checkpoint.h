@@ -23,7 +23,7 @@ namespace chromeball {
 // Files of renders that are not complete: checkpoints, shards and crops. Each is an .exr with the
 // image so far, which other programs read, and the sums of the samples behind it (exr_state.h).
 
-// Which render a file is of, and how its image is made.
+// Identifies the render that a file is a part of, and says how its image is made.
 struct RenderPart {
   std::string identity;  // renderIdentity() (job_description.h)
   FinishPlan plan;

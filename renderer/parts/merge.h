@@ -24,7 +24,7 @@ class PartSet {
   std::vector<std::string> paths_;
 };
 
-// The whole render, or what there is of it so far.
+// The whole render, or its samples so far.
 struct MergedParts {
   RenderPart part;
   RenderResult result;

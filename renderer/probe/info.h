@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// How much of a probe's light an image with less range would lose, and whether it has been lost
+// The light of a probe that an image with less range would lose, and whether it has been lost
 // already. Maps are lat-long, finite and not negative; radiance is constant over each texel.
 
 // The texels whose largest channel is within 0.2% of the largest of all: an encoding in 8 bits of

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A probe as surfaces reflect it that see all of it (HDRI book, section 9.8.1).
+// A probe as reflected by surfaces that see all of it (HDRI book, section 9.8.1).
 #pragma once
 
 #include <string_view>
@@ -43,8 +43,8 @@ class PrefilteredProbe {
 
 // A probe as the chain of prefiltered cube maps that real-time renderers look up by roughness.
 
-// Which roughness a level k of n has: Khronos' glTF sample viewer k / (n - 1); Filament
-// 1 - sqrt(1 - k / (n - 1)), the inverse of its roughness (2 - roughness).
+// The roughness of level k of n: in Khronos' glTF sample viewer, k / (n - 1); in Filament 1 -
+// sqrt(1 - k / (n - 1)), the inverse of its roughness (2 - roughness).
 enum class MipRoughness { Khronos, Filament };
 
 // "khronos" or "filament". Throws InputError, begun by `location`.
@@ -57,9 +57,9 @@ struct CubeLevel {
 
 // Level 0 is the map itself, each texel a mean over its solid angle; the others are convolved by
 // ZonalKernel::ggx, at the texels' centres. Faces halve from `size` to 16 (to `size` if that is
-// less). Texels are where OpenGL and Vulkan look up the direction of this program's axes; seen from
-// inside of the cube, faces are mirrored. Throws InputError unless `size` is a power of two from 1
-// to 4096.
+// less). The order of texels is such that OpenGL and Vulkan look them up by directions in this
+// program's axes; seen from inside of the cube, faces are mirrored. Throws InputError unless `size`
+// is a power of two from 1 to 4096.
 std::vector<CubeLevel> cubeMips(const Image& latLong, int size, MipRoughness roughness);
 
 }  // namespace chromeball

@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// How a lat-long map is turned where directions are looked up in it.
+// The turn of a lat-long map, applied when directions are looked up in it.
 
 // A yaw shifts the map's u. A tilt is a matrix that is applied to the directions, and not to the
 // map, which is never resampled; without one it costs a branch that is always predicted.

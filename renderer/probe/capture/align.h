@@ -40,7 +40,7 @@ ProbeAlignment alignProbes(const Image& first, const Image& second, std::string_
 
 // Whether the camera moved between two photographs.
 
-// What is at (x, y) in one photograph is at (x + dx, y + dy) in the other, in pixels.
+// A point at (x, y) in one photograph is at (x + dx, y + dy) in the other, in pixels.
 struct Shift {
   int dx = 0, dy = 0;
   // The fraction of the pixels that are above a percentile in one of the photographs and below it

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photographs of one view that differ in exposure, and what the camera's settings say about it.
+// Photographs of one view that differ in exposure, and the exposures by the camera's settings.
 #pragma once
 
 #include <optional>
@@ -47,7 +47,7 @@ struct Exposure {
 // clipped regions by some levels.
 inline constexpr float kSaturated = 250 / 255.f;
 
-// The hat of Debevec and Malik, 1 in the middle; 0 for levels that tell nothing: saturated, black
+// The hat of Debevec and Malik, 1 in the middle; 0 for levels without information: saturated, black
 // or NaN.
 inline float hatWeight(float level) {
   return level > 0 && level < kSaturated ? 2 * std::min(level, 1 - level) : 0;
@@ -62,8 +62,8 @@ int sampleStep(const Image& image);
 struct ExposureAgreement {
   size_t longer, shorter;  // two exposures, by index
   double factor;           // of their green channels' exposures, as given
-  // What was found instead, over what was given: the median over pixels for each channel; NaN for a
-  // channel without enough pixels that both exposures show well.
+  // The ratio of the exposure found to the given one: the median over pixels for each channel; NaN
+  // for a channel without enough pixels that both exposures show well.
   dvec3 found;
   size_t pixels = 0;  // in the channel that has the fewest
 

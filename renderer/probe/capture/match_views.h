@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photographs of one place, taken from several sides, brought to one exposure and orientation.
+// Photographs of one place, taken from several sides, matched in exposure and orientation.
 #pragma once
 
 #include <memory>
@@ -42,7 +42,7 @@ class CaptureView {
   double gain_ = 1;
 };
 
-// The weighted mean of the views that show a direction.
+// The weighted mean over the views that show a direction.
 CaptureView::Sample merged(const std::vector<CaptureView>& views, const dvec3& direction);
 
 // The match of a view with all views before it. The first view is the standard.

@@ -25,9 +25,9 @@ class MapPair {
   // shortened until the correlation grows.
   glm::dquat refined(glm::dquat rotation) const;
 
-  // Standard errors of a maximum about X, Y and Z, in radians: those that hold for residuals that
-  // depend on each other within each of the 80 faces of an icosphere ("sandwich" estimate; Liang
-  // and Zeger, "Longitudinal Data Analysis Using Generalized Linear Models", 1986).
+  // Standard errors of a maximum about X, Y and Z, in radians: valid for residuals that depend on
+  // each other within each of the 80 faces of an icosphere ("sandwich" estimate; Liang and Zeger,
+  // "Longitudinal Data Analysis Using Generalized Linear Models", 1986).
   glm::dvec3 standardErrors(const glm::dquat& rotation) const;
 
  private:

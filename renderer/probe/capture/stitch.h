@@ -27,7 +27,7 @@ ImageSize stitchedSize(const std::vector<Tile>& tiles);
 // a tile is not connected to the first by overlaps in which both are lit.
 std::vector<double> tileGains(const std::vector<Tile>& tiles);
 
-// What refinePoses() changed.
+// The changes by refinePoses().
 struct PoseRefinement {
   std::vector<double> turns;  // of each tile, degrees
   double before, after;       // RMS of the difference of log radiance in overlaps

@@ -72,11 +72,11 @@ inline constexpr double kExplained = 0.02;
 //
 // `clipped` is lat-long, finite and not negative; `direction` is unit; `angle` is the diameter of
 // the sun in degrees. Throws InputError if the sun lights hardly any of the samples, and if the
-// ball is darker than the probe alone would make it.
+// ball is darker than it would be under the probe alone.
 SunFromBall solveSun(const Image& clipped, const BallSamples& ball, const dvec3& direction,
                      double angle);
 
-// Where the sun is in a probe whose photographs it saturated.
+// The position of the sun in a probe whose photographs it saturated.
 
 // A connected region of texels that are as bright as the probe can show.
 struct ClippedSun {

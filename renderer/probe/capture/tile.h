@@ -18,7 +18,7 @@ struct Tile {
   double fov;        // vertical field of view, degrees, above 0 and below 180
 };
 
-// Where a tile's pixels look.
+// The directions that a tile's pixels show.
 class TileView {
  public:
   // `tile` must outlive this.
@@ -40,7 +40,7 @@ class TileView {
   double halfWidth_, halfHeight_;  // at distance 1
 };
 
-// Where tiles see the same directions.
+// Directions that two tiles see.
 
 struct Overlap {
   int first, second;  // indices of two tiles

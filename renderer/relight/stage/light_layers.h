@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light groups mixed anew: light is additive, so a picture under other lights is a weighted sum of
+// Mixes light groups anew: light is additive, so a picture under other lights is a weighted sum of
 // its layers (HDRI book, section 9.9.1; Madsen et al. 2003, section 4).
 #pragma once
 

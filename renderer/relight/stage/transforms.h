@@ -20,7 +20,7 @@ template <class T>
 void haarInverse(std::span<T> grid, int size);
 
 // The discrete cosine transform of 8 x 8 blocks, orthonormal, as in JPEG (ITU-T T.81, section
-// A.3.3, whose factors are these).
+// A.3.3, with the same factors).
 
 constexpr int kDctBlock = 8;
 

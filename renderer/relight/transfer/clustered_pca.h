@@ -19,7 +19,7 @@ struct Signals {
   }
 };
 
-// Each signal is about: its cluster's mean + sum over m of weight times vector.
+// Each signal is approximately its cluster's mean + sum over m of weight times vector.
 struct ClusteredPca {
   struct Cluster {
     std::vector<float> mean;
@@ -34,12 +34,12 @@ struct ClusteredPca {
   std::vector<float> signal(size_t i) const;
 };
 
-// `signals`: finite. At most as many clusters as signals are made; a cluster has at
-// most as many vectors as signals and as the signals' length. Starts from signals far from each
-// other, then by turns assigns each signal to the cluster that approximates it best and analyses
-// each cluster anew, for up to `rounds` or until nothing moves: the error never grows. Depends on
-// the arguments alone. Throws std::invalid_argument unless clusters >= 1, vectors >= 0 and there
-// is a signal.
+// `signals`: finite. At most as many clusters as signals are made; a cluster has at most as many
+// vectors as signals and as the signals' length. Starts from signals far from each other, then
+// alternately assigns each signal to the cluster that approximates it best and analyses each
+// cluster anew, for up to `rounds` or until nothing moves: the error never grows. The result
+// depends only on the arguments. Throws std::invalid_argument unless clusters >= 1, vectors >= 0
+// and there is a signal.
 ClusteredPca clusteredPca(const Signals& signals, int clusters, int vectors, int rounds = 12);
 
 }  // namespace chromeball

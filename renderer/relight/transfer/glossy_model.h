@@ -13,7 +13,7 @@
 
 namespace chromeball {
 
-// Transfer matrices of surfaces of any material: from a basis of light to the radiance in each of a
+// Transfer matrices of surfaces of any material, from a basis of light to the radiance in each of a
 // set of directions (Sloan, Kautz and Snyder 2002, section 6; Liu et al. 2004).
 
 // Directions of view above a surface, between which radiance is interpolated.
@@ -62,8 +62,8 @@ class ViewGrid {
 
 struct GlossyTransfer {
   // For each point and each node of the grid, the radiance towards it per unit of each function
-  // and, last, what the scene's own lamps and emission make. count is ViewGrid::kCount (functions +
-  // 1).
+  // and, last, the radiance from the scene's own lamps and emission. The count is ViewGrid::kCount
+  // (functions + 1).
   VertexTransfer matrices;
   std::vector<vec3> normals;  // by point: +z of its grid, in the frame Frame(normal)
 };
@@ -92,9 +92,9 @@ GlossyFile glossyFile(const std::vector<PlacedMesh>& meshes, const std::vector<B
 
 bool isGlossy(const TransferFile& file);
 
-// Radiance towards `eye` (the scene's coordinates) of points of the file's vertices, as lightOf().
-// The light multiplies the clusters' few matrices once; a vertex is a sum of its weights (Sloan et
-// al. 2003, eq. 7).
+// The radiance towards `eye` (in the scene's coordinates) of points of the file's vertices, as in
+// lightOf(). The light multiplies the clusters' few matrices once; a vertex is a sum of its weights
+// (Sloan et al. 2003, eq. 7).
 TransferLight lightTowards(const TransferFile& file, const std::vector<PlacedMesh>& meshes,
                            const std::vector<BakePoint>& points, std::span<const Rgb> light,
                            const glm::dvec3& eye);

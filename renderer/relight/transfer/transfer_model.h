@@ -17,8 +17,8 @@
 
 namespace chromeball {
 
-// Precomputed radiance transfer of diffuse surfaces: what each function of a basis of light makes
-// at points of a scene (Sloan, Kautz and Snyder 2002, section 5; HDRI book, section 9.9.2).
+// Precomputed radiance transfer of diffuse surfaces: the light at points of a scene under each
+// function of a basis of light (Sloan, Kautz and Snyder 2002, section 5; HDRI book, section 9.9.2).
 
 // The functions on the sphere whose weighted sum is the light of transfer: spherical harmonics, or
 // Haar wavelets on the faces of a cube (HDRI book, section 9.9.2).
@@ -49,7 +49,7 @@ class LightBasis {
   }
   void transform(std::span<Rgb> sums) const { chromeball::transform(sums, directions_, domain_); }
 
-  // l of a probe that is turned by `rotation`.
+  // The coefficients l of a probe that is turned by `rotation`.
   std::vector<Rgb> project(const Image& latLong, const Rotation& rotation) const;
 
   // The share of a face that a wavelet covers; 1 for harmonics.
@@ -75,7 +75,7 @@ struct TransferSettings {
 struct VertexTransfer {
   size_t count = 0;         // values of each point
   std::vector<Rgb> values;  // point by point
-  // What the scene's own lamps and emitting surfaces make; empty if it has none.
+  // The light of the scene's own lamps and emitting surfaces; empty if it has none.
   std::vector<Rgb> own;
   std::vector<uint8_t> isBuried;  // inside a body (PointLight::isBuried): values are 0
   InvalidSamples invalid;         // at the points' x and y
@@ -86,7 +86,7 @@ struct VertexTransfer {
 };
 
 // Values are irradiance / pi per unit of each function: the radiance of a white Lambertian surface,
-// as light that shines on it, with shadows and light that other surfaces reflect to it. For
+// due to light that shines on it, with shadows and light that other surfaces reflect to it. For
 // harmonics and an open point with normal n, value k is A_l / pi Y_k(n), with the A_l of
 // shIrradiance(), continued to higher bands (Ramamoorthi and Hanrahan 2001, eq. 8). `meshes`: all
 // instances'. The result depends on points, samples and seed only.
