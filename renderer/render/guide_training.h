@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the guides learn from photons and from the first passes of a render, and whether they are
+// Trains the guides with photons and the first passes of a render, and decides whether they are
 // used at all.
 #pragma once
 
@@ -25,7 +25,7 @@ class GuideTraining {
   static constexpr size_t kMaxRecords = 1 << 20, kMaxPhotons = 1 << 20;
   static constexpr uint32_t kMinSamples = 8;  // per pixel of a render that is guided
 
-  // The samples per pixel from which the guides may learn; 0 for a render that has none.
+  // The samples per pixel that the guides may learn from; 0 for a render without guides.
   static uint32_t samplesOf(const RenderSettings& settings);
 
   // All arguments must outlive this. Guides nothing if the strategy cannot be guided
@@ -44,7 +44,7 @@ class GuideTraining {
 
   // Whether the pass from `done` to `wanted` samples per pixel is part of the training.
   bool startPass(uint32_t done, uint32_t wanted) const;
-  // Where a path of the pixel puts its records; null: nowhere. Thread-safe for different tiles.
+  // The place for records of the pixel's paths; null: none. Thread-safe for different tiles.
   GuideRecords* recordsOf(size_t tile, uint64_t pixel);
 
   // Trains the guide of light samples with all records so far. If guiding begins: the weight of the
@@ -71,7 +71,7 @@ class GuideTraining {
   CausticGuide caustics_;
 };
 
-// What guided bounces gain, estimated from the records of a training.
+// The gain by guided bounces, estimated from the records of a training.
 
 // The fraction of bounces from the lobes that makes variances times time least; 0, unless `always`:
 // none. `records`: by tile, of a fraction of the pixels, with `samples` each.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The result of a render that goes on, for one thread that watches it.
+// The result of a render in progress, for one thread that watches it.
 #pragma once
 
 #include <atomic>

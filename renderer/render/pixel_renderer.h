@@ -13,15 +13,15 @@
 
 namespace chromeball {
 
-// Which points of the Sobol sequence the samples of a pixel are.
+// The points of the Sobol sequence for the samples of a pixel.
 
-// How many of a pixel's first `samples` samples belong to the half (Film).
+// The number of a pixel's first `samples` samples that belong to the half (Film).
 constexpr uint32_t samplesOf(int half, uint32_t samples) {
   return samples / 2 + (half == 0 ? samples % 2 : 0);
 }
 
-// Each half of a pixel's samples is a sequence with its own randomisation. Where it is longer than
-// the table, the table is used again with another one.
+// Each half of a pixel's samples is a sequence with its own randomisation. If it is longer than the
+// table, the table is reused with another randomisation.
 //
 // The samples of a shard (render_settings.h) are points of the whole render's sequence.
 class SampleSequence {

@@ -26,12 +26,12 @@ struct RenderResult {
   void add(const RenderResult& part, int x, int y) { addPixels(part, x, y), addTotals(part); }
   void addPixels(const RenderResult& part, int x, int y);  // thread-safe for different pixels
   void addTotals(const RenderResult& part);                // what is not per pixel
-  // Takes the pixels of a result of the same settings.
+  // Takes the pixels of a result with the same settings.
   void copyPixels(const RenderResult& from, const PixelRect& rect);
-  // These pixels alone, with the names of the groups.
+  // Only these pixels, with the names of the groups.
   RenderResult part(const PixelRect& rect) const;
 
-  // The totals, then the pixels in bands (film/rows.h).
+  // Archives the totals, then the pixels in bands (film/rows.h).
   void archive(Archive& a);
   void archiveTotals(Archive& a);
   void archivePixels(Archive& a, Rows rows);
@@ -56,7 +56,7 @@ struct RenderResult {
   RenderResult(const RenderResult& whole, const PixelRect& rect);
 };
 
-// What approximate renders use and other renders may use again.
+// Data that approximate renders use and that other renders may reuse.
 struct RenderAids {
   const EnvironmentLight* environment = nullptr;  // the integrators that use it need one
   IrradianceCache* cache = nullptr;  // with RenderSettings::cacheError: gets what it lacks

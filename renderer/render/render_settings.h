@@ -33,8 +33,8 @@ struct Shard {
 
   void archive(Archive& a);
 
-  // Mean samples per pixel of all shards when this one has taken `taken`; where the samples are
-  // consecutive, `taken`.
+  // The mean samples per pixel of all shards when this one has taken `taken`; `taken` itself if the
+  // samples are consecutive.
   uint32_t ofAll(uint32_t taken) const;
   // The mean samples per pixel, of `taken`, that this shard keeps.
   uint32_t kept(uint32_t taken) const;
@@ -42,7 +42,7 @@ struct Shard {
   // The first of a pixel's samples if they are consecutive; even, so that both halves have equal
   // shares.
   uint32_t first() const { return firstOf(index); }
-  // How many samples per pixel the shard takes.
+  // The number of samples per pixel that the shard takes.
   uint32_t samples() const;
 
  private:
@@ -81,11 +81,11 @@ struct Crop {
   int x, y, width, height;
 };
 
-// The largest that a user may give.
+// The largest number that a user may give.
 inline constexpr uint32_t kMaxSamples = 2'000'000'000;
 inline constexpr int kMaxDepth = 1'000'000;
 
-// Names of layers that are by source of light.
+// Names of layers that are split by source of light.
 inline constexpr std::string_view kLightGroups = "light_groups", kShadowMattes = "shadow_mattes";
 
 inline bool isOfLight(std::string_view layer) {
@@ -101,7 +101,7 @@ struct RenderSettings {
   uint32_t samples = 256;
   std::optional<double> timeLimit;   // seconds
   std::optional<double> noiseLimit;  // fraction (film/noise.h)
-  // More samples in noisier pixels, from 16 on; `samples` is then the mean (film/noise.h).
+  // Takes more samples in noisier pixels, from 16 on; `samples` is then the mean (film/noise.h).
   bool adaptive = true;
   Guiding guiding = Guiding::Auto;  // as it was asked for
   int maxDepth = 8;                 // as in PathSettings, like maxTransmissionDepth
@@ -147,7 +147,7 @@ struct RenderSettings {
             .maxSpecularDepth = maxSpecularDepth,
             .hideProbe = hideProbe};
   }
-  // Guided bounces have no kind: with limits of depth by kind, nothing is guided.
+  // Guided bounces have no kind: with depth limits by kind, nothing is guided.
   Guiding usedGuiding() const { return path().limitsKinds() ? Guiding::Off : guiding; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A render between two tiles: everything that it needs to go on.
+// A render between two tiles: everything that it needs to continue.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct RenderState {
   void archive(Archive& a);
 };
 
-// What a long render does besides rendering.
+// The tasks of a long render besides rendering.
 class RenderControl {
  public:
   virtual ~RenderControl() = default;
@@ -42,7 +42,7 @@ class RenderControl {
   virtual bool restore(RenderState& state) = 0;
   // Called after each pass. No thread renders meanwhile.
   virtual void endPass(const RenderState&) {}
-  // Whether pause() shall be called as soon as the tiles in work are finished. Thread-safe.
+  // Whether pause() is to be called as soon as the tiles in work are finished. Thread-safe.
   virtual bool wantsPause(const RenderState& state) const = 0;
   // No thread renders meanwhile. The state may be one that cannot be stored.
   virtual void pause(RenderState& state) = 0;

@@ -157,7 +157,7 @@ class MovingCamera {
   std::vector<Key> keys_;
 };
 
-// Where a camera shows points: the inverse of CameraRays.
+// Projects points onto a camera's image: the inverse of CameraRays.
 
 class CameraView {
  public:

@@ -24,7 +24,7 @@ struct Sight {
 std::vector<Sight> sightsFrom(const Scene& scene, const std::vector<int>& instances,
                               const glm::dvec3& eye);
 
-// What is seen of a building from outside.
+// The view of a building from outside.
 
 // The nearest surfaces seen along one axis, from both sides of a box, sampled by a grid of kCells^2
 // parallel rays.

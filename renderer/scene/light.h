@@ -36,7 +36,7 @@ struct PunctualLight {
   vec3 position{0};          // metres
   vec3 direction{0, 0, -1};  // unit, from the light into the scene
   float range = INFINITY;    // metres; beyond it the light is 0
-  // A spot's cones, as coneOf() its angles: full light inside, none outside.
+  // A spot's cones, as coneOf() of their angles: full light inside, none outside.
   float innerCone = 0, outerCone = 0.29289322f;
   std::string name = {};  // of its node
   int node = -1;          // index into Scene::nodeNames; -1: none

@@ -24,7 +24,7 @@ struct Transform {
   bool operator==(const Transform&) const = default;
 };
 
-// What a transform of a node does to surfaces: glTF allows scales of 0, which flatten a solid to a
+// The effect of a node's transform on surfaces: glTF allows scales of 0, which flatten a solid to a
 // plane figure.
 
 inline constexpr double kSingular = 1e-9;  // relative to the lengths of the columns

@@ -32,7 +32,7 @@ inline size_t triangleCount(const Scene& scene, const Instance& instance) {
   return scene.meshes[size_t(instance.mesh)].triangles.size();
 }
 
-// How far apart surfaces may be that are meant to lie in one plane.
+// The largest distance of surfaces that are meant to lie in one plane.
 
 // An offset in metres, at least rayOffset(). The latter is almost 0 for a triangle in a coordinate
 // plane, but the rotation of a node that turns another triangle into this plane has the rounding

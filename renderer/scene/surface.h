@@ -48,7 +48,7 @@ bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangl
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
                   const vec3& wo, float crossSection = 0, float time = 0);
 
-// Fetch into the cache what surfaceAt() reads: the triangle, then its vertices.
+// These fetch into the cache what surfaceAt() reads: the triangle, then its vertices.
 inline void prefetchTriangle(const Scene& scene, const Instance& instance, uint32_t triangle) {
   __builtin_prefetch(&scene.meshes[size_t(instance.mesh)].triangles[triangle]);
 }

@@ -12,7 +12,7 @@
 
 namespace chromeball {
 
-// What a denoised image has left.
+// The error that a denoised image has left.
 struct DenoiseReport {
   double noise = 0;  // as Noise::noise, estimated
   double seconds = 0;
@@ -21,7 +21,7 @@ struct DenoiseReport {
 // The parts of an image that are filtered apart.
 std::vector<HalvedImage> directAndIndirect(const HalvedImage& color, const HalvedImage& direct);
 
-// `result` must be of settings with `denoise`. nullopt if `stop` is set meanwhile.
+// `result` must have been rendered with `denoise`. nullopt if `stop` is set meanwhile.
 std::optional<Denoised> denoiseRender(const RenderResult& result, const Progress& progress,
                                       const std::atomic<bool>& stop);
 

@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// How an image with this metadata lies in the view of its camera: `cameraFov` is the vertical field
-// of view in degrees, 0 of an orthographic camera.
+// The place of an image with this metadata in the view of its camera: `cameraFov` is the vertical
+// field of view in degrees, 0 for an orthographic camera.
 ViewFrame viewFrame(const Image& image, const std::optional<Placement>& placement,
                     const Metadata& metadata);
 

@@ -37,7 +37,7 @@ struct CompositeFinish {
   bool isShadowCatcher() const { return mode == CompositeMode::ShadowCatcher; }
 };
 
-// What the image is made of besides the samples.
+// The inputs of the image besides the samples.
 struct FinishPlan {
   RenderSettings settings;  // size, crop, layers of the first hit, hideProbe, denoise
   std::optional<CompositeFinish> composite;
@@ -63,8 +63,8 @@ struct FinishedImage {
 // fractions from kRenderShare to 1 then.
 FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const Progress& progress,
                      const std::atomic<bool>& stop);
-// The same without denoising, and without what is estimated from many pixels: the noise and the
-// layer `variance`. `result` may be a part of the image's, unless it is a composite.
+// The same without denoising, and without the estimates from many pixels: the noise and the layer
+// `variance`. `result` may cover a part of the image, unless it is a composite.
 OutputImage imageOf(const FinishPlan& plan, const RenderResult& result);
 // The same for a composite of two passes.
 FinishedImage finishComposite(const FinishPlan& plan, const CompositeRender& render,

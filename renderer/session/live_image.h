@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image of a render that goes on, brought up to date by tiles.
+// The image of a render in progress, brought up to date by tiles.
 #pragma once
 
 #include <array>

@@ -50,9 +50,9 @@ struct FrameChange {
   bool lighting = false;  // the probe, or its surroundings
 };
 
-// Replaces the camera, the probe if it has turned or is another file, and, where a model is
-// animated, what moves with it, for another frame of the same job. Not for composites; a probe that
-// turns must have a file.
+// Replaces the camera, the probe if it has turned or is another file, and whatever an animated
+// model moves, for another frame of the same job. Not for composites; a probe that turns must have
+// a file.
 FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded, ModelCache& cache);
 
 // Messages to the user about the files of a job.

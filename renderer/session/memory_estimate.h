@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// States what a loaded scene's render will take, before the acceleration structure, the tables of
-// the probe and the images are allocated.
+// States the memory that a loaded scene's render will take, before the acceleration structure, the
+// tables of the probe and the images are allocated.
 #pragma once
 
 #include "base/memory.h"

@@ -15,8 +15,8 @@ namespace chromeball {
 
 struct RenderDescription;
 
-// What depends on the models' bounds, at time 0 of an animation, so that it is the same at all
-// times.
+// The parts of a view that depend on the models' bounds, at time 0 of an animation, so that they
+// are the same at all times.
 struct AutomaticView {
   std::optional<Camera> camera;  // if nobody has placed one
   vec3 centre{0};                // of the camera's turn; 0 without one
@@ -56,9 +56,9 @@ PlacedModels placeModels(RenderDescription& job, ModelCache& cache,
 Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin);
 
-// `models`, which are the job's at some time, at this origin and without lamps, with their lights,
-// which are black if the job has them off; an animated model
-// may have no triangles at its time. `warnings`: each once.
+// Loads `models`, the job's at some time, at this origin and without lamps, but with their lights,
+// which are black if the job switches them off; an animated model may have no triangles at its
+// time. `warnings`: each once.
 Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
                  const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings);
 

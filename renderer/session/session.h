@@ -54,28 +54,29 @@ class Session {
 
   // Begins, if it has not begun: reads files, builds structures and renders.
   void start();
-  // Asks the work to end, and does not wait: from any thread at any time. Preparing ends within
-  // tens of milliseconds; a render when the tiles in work are finished, and its image is made of
-  // what there is.
+  // Asks the work to end, without waiting; may be called from any thread at any time. Preparing
+  // ends within tens of milliseconds; a render ends when the tiles in work are finished, and its
+  // image is made from the samples so far.
   void requestCancel();
   // The same, and waits.
   void cancel();
-  // Ends the work within tens of milliseconds, whatever it is, without an image. Takes another
-  // description, for the next start().
+  // Ends any work within tens of milliseconds, without an image. Takes another description, for the
+  // next start().
   void update(RenderDescription description);
 
   bool isRunning() const;
   double fraction() const;  // of the render's work that is done; NaN if unknown
   // Waits for the end of the render. Throws Interrupted if it was cancelled before it rendered.
   const SessionImage& wait();
-  // What there is, also while it renders: not denoised, without the layer `variance`, and with the
-  // noise after the last pass over the image. Null before the first samples, and for a reference of
-  // two passes. Costs little if the snapshot before the last one is not in use any more.
+  // The image so far, also during the render: not denoised, without the layer `variance`, and with
+  // the noise after the last pass over the image. Null before the first samples, and for a
+  // reference of two passes. Costs little if the snapshot before the last one is not in use any
+  // more.
   std::shared_ptr<const SessionImage> snapshot();
   // Notes and warnings of the files and the description; after wait().
   Messages messages() const;
 
-  // What the last start() did, after wait().
+  // What the last start() has done; valid after wait().
   struct Work {
     bool loadedScene = false, loadedProbe = false, preparedLighting = false;
     int meshBuilds = 0;  // structures over meshes, by all starts so far

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who watches an image while it is rendered: a page in a browser, another program.
+// A viewer of an image while it is rendered: a page in a browser, or another program.
 #pragma once
 
 #include <cstdint>

@@ -26,7 +26,7 @@ concept ScattersLight = requires(const T bsdf, const vec3& wi, Lobes lobes, vec2
   { bsdf.transmits() } -> std::same_as<bool>;
   // Shading normal, unit, on the viewer's side.
   { bsdf.normal() } -> std::same_as<const vec3&>;
-  // Adds what environment mapping needs of each lobe, times a weight.
+  // Adds the lobes as environment mapping needs them, times a weight.
   { bsdf.addTo(mapLobes, lobe) } -> std::same_as<void>;
 };
 static_assert(ScattersLight<Lambert> && ScattersLight<MetallicRoughness> && ScattersLight<Layered>);
@@ -70,7 +70,7 @@ class Bsdf {
     return lobes;
   }
 
-  // Removes the other lobes; what is left stays as it was.
+  // Removes the other lobes; the remaining ones stay as they were.
   void keepOnly(KeptLobes kept) {
     std::visit([&](auto& bsdf) { bsdf.keepOnly(kept); }, set_);
   }

@@ -89,7 +89,7 @@ class MapLobes {
   size_t count_ = 0;
 };
 
-// Which lobes a BSDF keeps where a limit of depth has been reached (PathSettings).
+// The lobes that a BSDF keeps where a depth limit has been reached (PathSettings).
 struct KeptLobes {
   bool diffuse = true, specular = true;
 };

@@ -174,7 +174,7 @@ class GlassTable {
 struct BsdfTables {
   // `widened`: smooth materials may become rough (transport/path_settings.h).
   explicit BsdfTables(std::span<const Material> materials, bool widened = false);
-  // Makes those that are missing.
+  // Makes the tables that are missing.
   void complete(std::span<const Material> materials, bool widened = false);
 
   std::shared_ptr<const EnergyTable> energy;

@@ -65,7 +65,7 @@ StudyResults studyResults(const Study& study, const RenderStore& store, const Re
 const Cell* findCell(const StrategyResult& strategy, const Budget& budget);
 
 // The largest budget (with isWanted(budget)) for which all strategies of this run have a cell;
-// nullopt if there is none. Strategies of earlier runs may have no cell for it.
+// nullopt if there is none. Strategies from earlier runs need not have a cell for it.
 std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results);
 std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results,
                                           bool (*isWanted)(const Budget&));

@@ -41,7 +41,7 @@ struct Study {
   int repeats = 4;                      // of each strategy and budget
   std::string baseline;                 // one of the strategies
 
-  // Strategies and budgets in the results: the above, and those that earlier runs left in the
+  // Strategies and budgets in the results: the above, and the ones that earlier runs left in the
   // folder.
   std::vector<std::string> shownStrategies;
   std::vector<Budget> shownBudgets;
@@ -63,8 +63,8 @@ struct Study {
   std::vector<RenderKey> renders() const;
 };
 
-// What a study compares: a lighting strategy, with the integrator and the ways of rendering that it
-// is combined with.
+// The subject of a comparison: a lighting strategy, with the integrator and the ways of rendering
+// that it is combined with.
 
 // A way of rendering besides the lighting strategy.
 enum class Mode {
@@ -92,7 +92,7 @@ struct Row {
   std::string name() const;
   // `settings` with these modes, and no others.
   RenderSettings applied(RenderSettings settings) const;
-  // The same of a description, with the strategy.
+  // The same for a description, with the strategy.
   void applyTo(RenderDescription& description) const;
 };
 

@@ -45,8 +45,8 @@ class Accel {
   // (Material::straightShadows), or some are masked or blended.
   bool needsMedia() const { return needsMedia_; }
 
-  // The closest hit; none for a ray with a NaN or coordinates beyond 1e18. `key` seeds the random
-  // choice at blended surfaces, which let the ray pass with probability 1 - alpha.
+  // The closest hit; none for a ray with a NaN or with coordinates beyond 1e18. `key` seeds the
+  // random choice at blended surfaces, which let the ray pass with probability 1 - alpha.
   bool intersect(const Ray& ray, uint32_t key, Hit& hit, RayMask mask = kAllInstances) const;
 
   // The closest hits of several rays, faster than one at a time. Coherent: rays that are close

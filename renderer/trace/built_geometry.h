@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Embree's structures over single meshes and over what does not move. The acceleration structures
-// of several frames share them.
+// Embree's structures over single meshes and over instances that do not move. The acceleration
+// structures of several frames share them.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ class BuiltGeometry {
   RTCDeviceTy* device() const { return device_; }
   int builds() const { return builds_; }  // of meshes and of what does not move, so far
 
-  // A build begins: keeps what an earlier one made of the meshes that the scene still has.
+  // Begins a build: keeps the structures of an earlier one for meshes that the scene still has.
   void begin(FilterUse filters);
 
   RTCSceneTy* newScene() const;

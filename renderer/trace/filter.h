@@ -31,9 +31,9 @@ inline uint32_t instanceOf(const Scene& scene, uint32_t topInstance, uint32_t ge
   return topInstance < scene.instances.size() ? topInstance : geometry;
 }
 
-// Whether a ray meets a surface that it hits: with probability alpha. A ray meets a body as a
-// whole or not at all: its coverage is decided where the ray enters, and the ray meets the back
-// always, to be ignored there if the ray is not inside (Media::ignores).
+// Whether a ray meets a surface that it hits: with probability alpha. A ray meets a body as a whole
+// or not at all: its coverage is decided where the ray enters, and the ray always meets the back,
+// which is ignored if the ray is not inside (Media::ignores).
 bool isCovered(const Scene& scene, const Hit& hit, const vec3& direction, float time, uint32_t key);
 
 // Ignores the hit unless isCovered().

@@ -83,14 +83,15 @@ struct GuidedBounce {
   Rgb before{0};          // radiance that the path had found up to the bounce
   bool isNew = false;
 
-  // The bounce's vertex is complete; what the path finds from now on is found behind it.
+  // Called when the bounce's vertex is complete: light that the path finds from now on is found
+  // behind it.
   void startRest(const Rgb& radiance) {
     if (isNew) before = radiance;
     isNew = false;
   }
 };
 
-// What guides learn from paths.
+// The records from which guides learn.
 struct GuideRecords {
   bool wantsLights = true;
   std::vector<LightRecord> lights;

@@ -51,7 +51,7 @@ class LightGroups {
   std::vector<int> ofNode_;  // -1 for a node that does not emit
 };
 
-// What a path would find of unit radiance from one direction of the probe.
+// The throughput of a path for unit radiance from one direction of the probe.
 struct DirectedLight {
   vec3 wi;  // unit
   Rgb throughput;
@@ -74,7 +74,8 @@ class GroupSums {
     sums_[size_t(groups_.ofSample(source, light))] += radiance;
   }
   // `throughput` times the radiance of light.escaped(), by group. Each group is independent of the
-  // others, so that its bits scale with those of its source. `source`: as LightGroups::rangeOf().
+  // others, so that its bits scale with those of its source. `source`: as for
+  // LightGroups::rangeOf().
   void addEscaped(const LightSource& light, std::optional<size_t> source, const LightPoint& point,
                   const vec3& wi, const Rgb& throughput);
   // `throughput` times light.background().

@@ -46,7 +46,7 @@ class Media {
   // leaves the body, a reflected ray changes nothing.
   Media& follow(const Surface& surface, const vec3& wi);
 
-  // The last that was entered of this material, as an index into bodies(); -1: none.
+  // The last entered body with this material, as an index into bodies(); -1: none.
   int find(const Material* body) const;
 
  private:

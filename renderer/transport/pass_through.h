@@ -23,8 +23,9 @@ inline bool mayPass(const PathState& state, const Surface& surface) {
 }
 
 // The front of a single-sided surface reflects light and also passes light that arrives at its
-// back. A path that is no camera's or mirror's follows one of the two at random, with twice the
-// throughput; the MIS weights stay valid, because shadow rays pass the front too.
+// back. A path that comes neither from the camera nor from a mirror follows one of the two at
+// random, with twice the throughput; the MIS weights stay valid, because shadow rays pass the front
+// too.
 inline bool passesFromBehind(const PathState& state, const Material& material, bool frontFace) {
   return !state.isDelta && frontFace && material.backLetsLightThrough();
 }

@@ -27,7 +27,7 @@ struct Place {
   explicit operator bool() const { return count > 0; }
   const Hit& current() const { return hits[size_t(at)]; }
 
-  // Moves to the next surface for a path that goes on in this direction; to none behind the last.
+  // Moves to the next surface for a path that continues in this direction; to none behind the last.
   void leave(const vec3& direction) {
     if (count == 0) return;
     at += glm::dot(axis, direction) > 0 ? 1 : -1;

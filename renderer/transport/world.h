@@ -22,7 +22,7 @@ struct World {
   explicit World(const Scene& described, const std::vector<RayMask>& masks = {})
       : World(described, masks, BsdfTables(described.materials)) {}
   // Copies the BSDF tables of another world, which must include those that the materials need.
-  // `earlier`: as Accel.
+  // `earlier`: as for Accel.
   World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables,
         std::shared_ptr<BuiltGeometry> earlier = nullptr)
       : scene(described),

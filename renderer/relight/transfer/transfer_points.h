@@ -15,7 +15,7 @@ namespace chromeball {
 
 // Paths that look for light of every direction at once.
 
-// A probe whose light no path adds: where a path escapes, the caller decides what it finds.
+// A probe whose light no path adds: the caller decides what an escaping path finds.
 class NoProbe : public LightSource {
  public:
   void sample(const LightPoint&, const PixelSampler&,
@@ -61,8 +61,8 @@ class TransferPoints {
         table_(std::bit_ceil(std::clamp(settings.samples, 16u, kMaxTable)),
                dimension::tabulated(settings.maxDepth + 1), settings.seed) {}
 
-  // estimate(point, surface, worker) for each point that is not buried, where it may call
-  // forSamples(); `result` gets the rest.
+  // Calls estimate(point, surface, worker), which may call forSamples(), for each point that is not
+  // buried; `result` gets the rest.
   template <class Estimate>
   void forPoints(VertexTransfer& result, const Progress& progress, const Estimate& estimate) const {
     result.isBuried.assign(points_.size(), 0);

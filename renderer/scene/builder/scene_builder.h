@@ -20,7 +20,7 @@ struct TextureSampler {
 
 // Adds to a scene, so that one made of arrays is as sound as one read from a file: values are
 // checked, normals and tangents completed, mip levels made. All functions throw InputError, which
-// names the array or value and the index of what is wrong, and then leave the scene as it was. The
+// names the array or value and the index of the error, and then leave the scene as it was. The
 // numbers that they return are indices into the scene's lists.
 class SceneBuilder {
  public:

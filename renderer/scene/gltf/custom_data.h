@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a glTF file of this program carries besides a scene.
+// Data that a glTF file of this program carries besides a scene.
 #pragma once
 
 #include <map>

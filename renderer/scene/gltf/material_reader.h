@@ -17,7 +17,7 @@ namespace chromeball {
 // Converts on demand, so that unused materials and images cost nothing.
 class MaterialReader {
  public:
-  // `cache` receives what is decoded; null: none.
+  // `cache` receives the decoded images; null: none.
   MaterialReader(GltfFile& file, TexelCache* cache) : file_(file), cache_(cache) {}
 
   // Converts glTF material `index` (-1: the default material); returns its index in the scene.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What several loads of one model share, as for the frames of an animation.
+// Data that several loads of one model share, as for the frames of an animation.
 #pragma once
 
 #include <compare>
@@ -59,7 +59,7 @@ struct MeshKey {
   auto operator<=>(const MeshKey&) const = default;
 };
 
-// Does not keep meshes: it knows those that some scene has.
+// Does not keep meshes alive: it knows the meshes that some scene has.
 class MeshCache {
  public:
   // Null if no scene has the mesh.

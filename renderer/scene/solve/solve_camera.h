@@ -32,7 +32,7 @@ size_t fewestPoints(const CameraKnowledge& known);
 CameraFit solveByPoints(const std::vector<ObservedPoint>& points, const CameraKnowledge& known,
                         const std::string& file);
 
-// What places the camera, once its rotation is known. The ground is the plane y = 0.
+// The data that place the camera, once its rotation is known. The ground is the plane y = 0.
 struct LinePlacement {
   std::optional<double> height = {};      // of the camera above the ground, metres, > 0
   std::optional<glm::dvec2> origin = {};  // the pixel that shows (0, 0, 0)
