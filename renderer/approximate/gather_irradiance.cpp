@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-// What is seen in one stratum.
+// What one stratum sees.
 struct Seen {
   Rgb radiance{0};            // reflected
   float distance = INFINITY;  // metres
@@ -48,7 +48,7 @@ vec3 cosineDirection(const Frame& frame, vec2 u) {
 // Follows paths from a point that receives light, without what sourcesAlone() finds there.
 class GatheredPath {
  public:
-  // Both tracers must outlive this.
+  // Both tracers must outlive this object.
   GatheredPath(const PathTracer& tracer, const PathTracer& sources)
       : tracer_(tracer), sources_(sources) {}
 
@@ -68,7 +68,7 @@ class GatheredPath {
   }
 
  private:
-  // What the vertex adds to the path as the light of a source.
+  // The light of a source that the vertex adds to the path.
   Rgb emissionAt(PathState state, const Hit& hit, PathContext& context) const {
     const Scene& scene = tracer_.world().scene;
     const auto met = tracer_.metAt(state, hit, context);

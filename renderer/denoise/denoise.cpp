@@ -107,8 +107,8 @@ FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& sto
   return features;
 }
 
-// Guides that are filtered themselves. Their remaining variance is that between the halves, and a
-// fraction of the noise, as its differences between neighbours underestimate it.
+// Guides that are filtered themselves. Their remaining variance is the variance between the halves
+// plus a fraction of the noise, since its differences between neighbours underestimate it.
 HalfGuides guidesOf(const HalfPlanes& filtered, const Component& component) {
   constexpr float kRemaining = 0.05f;
   constexpr int kReach = 2;
@@ -192,7 +192,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
       for (int x = 0; x < width; ++x) {
         if (isEmpty(input, part, x, y)) continue;
         for (int c = 0; c < 3; ++c) {
-          // The light of fireflies is missing; without the limit there would be their noise.
+          // The light of fireflies is missing; without the limit their noise would be there.
           const float known = std::max(found.error[size_t(c)].at(x, y), 0.0f);
           const float error =
               std::min(known + squaredBias.at(x, y), std::max(known, noise[size_t(c)].at(x, y)));

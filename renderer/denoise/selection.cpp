@@ -70,8 +70,8 @@ Plane squaredSizes(const std::vector<Candidate>& candidates) {
   });
 }
 
-// The index of the chosen candidate. By relative errors: by absolute ones, less noise of a bright
-// pixel would excuse its light in all pixels around it.
+// The index of the chosen candidate, by relative errors: with absolute ones, reduced noise in a
+// bright pixel would excuse its light in all pixels around it.
 Plane choose(const std::vector<Candidate>& candidates) {
   const Plane size = squaredSizes(candidates);
   const auto errorOf = [&](size_t i) {

@@ -239,7 +239,7 @@ SampleAllocation::SampleAllocation(const PixelErrors& pilot, uint32_t pilotSampl
     for (int x = 0; x < pilot.width; ++x) {
       const size_t i = index(x, y);
       if (isMeter(i)) continue;
-      // The weights of the neighbours depend on this pixel; the others' do not.
+      // The weights of the neighbours depend on this pixel; other weights do not.
       double others = total, count = double(weights.size());
       forNeighbors(pilot, x, y, [&](size_t j, int, int) { others -= weights[j], --count; });
       if (others > 1e-12 * total)

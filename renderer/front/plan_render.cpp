@@ -188,7 +188,7 @@ RunDescription plannedRun(const Settings& s) {
           .isOfFrames = s.has("frames")};
 }
 
-// What a .png clips is relative to its white.
+// A .png clips relative to its white.
 DevelopSettings plannedDevelop(const Settings& s, float exposure) {
   const auto text = s.getIfGiven<std::string>("output.develop");
   if (!text) return {};

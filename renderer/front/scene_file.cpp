@@ -83,7 +83,7 @@ void readProbeTurns(const Entry& keys, SceneFile& scene) {
   });
 }
 
-// Takes `scale = "plate"` out of [probe]; nullopt if it is a number. The location.
+// Takes `scale = "plate"` out of [probe]; nullopt if it is a number. Returns the location.
 std::optional<std::string> takePlateScale(const std::string& path, toml::table& table) {
   toml::table* probe = table["probe"].as_table();
   const toml::node* scale = probe ? probe->get("scale") : nullptr;

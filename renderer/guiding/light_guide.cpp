@@ -152,8 +152,8 @@ void addMoments(Records records, const DirectionTree& tree,
 
 }  // namespace
 
-// Each half of the records judges the tree of the other half: a tree seems better than it is on
-// the records that it was made of.
+// Each half of the records judges the tree of the other half: on the records that it was made from,
+// a tree seems better than it is.
 GuideRegion::GuideRegion(std::span<const LightRecord> records) {
   if (records.size() < kMinToGuide) return;
   std::array<double, kFractions.size()> moments{};

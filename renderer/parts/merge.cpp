@@ -69,7 +69,7 @@ bool overlap(const Crop& a, const Crop& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-// `crops`: one part of each.
+// `crops`: one part of each crop.
 void checkCrops(const std::vector<const Header*>& crops) {
   uint64_t covered = 0;
   for (size_t i = 0; i < crops.size(); ++i) {
@@ -99,7 +99,7 @@ FinishPlan wholePlan(FinishPlan plan) {
   return plan;
 }
 
-// The images of a composite, its layers and light groups are not among what imageBytes() counts.
+// The images of a composite, its layers and light groups are not counted by imageBytes().
 double bytesOf(const FinishPlan& plan) {
   const RenderSettings& s = plan.settings;
   double perPixel = 0;

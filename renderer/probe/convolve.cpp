@@ -67,7 +67,7 @@ std::array<double, 3> ZonalKernel::legendreMoments() const {
 
 namespace {
 
-// A kernel, and what the sums of all directions need to know of it.
+// A kernel, with the numbers that the sums of all directions need.
 struct Lobe {
   const ZonalKernel& kernel;
   double error;

@@ -12,7 +12,7 @@ namespace {
 
 using Row = RowIntegrals<dvec3, 3>;
 
-// Rows of coarser maps are divided: in azimuth the integrals are exact, but all of a row has the
+// Rows of coarser maps are divided: in azimuth the integrals are exact, but a whole row has the
 // horizon of its mean direction.
 constexpr int kMinRows = 128;
 

@@ -24,9 +24,9 @@ struct Columns {
   int begin, end;
 };
 
-// Those of a lat-long map that a cap may touch, in row y. At an elevation closer to a pole than the
-// cap's rim, all; else the meridians that touch the cap, asin(sin(radius) / cos(elevation)) from
-// its axis.
+// The columns of a lat-long map that a cap may touch, in row y. At an elevation closer to a pole
+// than the cap's rim, all columns; else those between the meridians that touch the cap,
+// asin(sin(radius) / cos(elevation)) from its axis.
 Columns columnsOf(const SphericalPolygon& polygon, const ImageSize& size) {
   const double radius = polygon.capRadius(),
                cosine = std::hypot(polygon.axis().x, polygon.axis().z);
@@ -91,7 +91,7 @@ dvec3 meanOfRim(const Image& map, const std::vector<CoveredTexel>& coverage) {
   return weight > 0 ? sum / weight : dvec3(0);
 }
 
-// The texel's radiance without what the polygon takes.
+// The texel's radiance without the part that the polygon takes.
 Rgb remaining(const Image& map, const CoveredTexel& covered, const dvec3& fill) {
   const dvec3 before(map.rgb(covered.texel.x, covered.texel.y));
   return Rgb(before - double(covered.part) * glm::max(before - fill, dvec3(0)));

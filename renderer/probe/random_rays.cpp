@@ -83,7 +83,7 @@ double relativeVariance(double meanSquare, double e) {
 }  // namespace
 
 std::vector<RayVariance> rayVariances(const Image& latLong, std::span<const vec3> normals) {
-  // What an arc that ends beside a light gets of it by rounding is no light.
+  // Light that an arc beside a light gets by rounding does not count.
   constexpr double kRounding = 1e-13;
   const double sphere = 4 * kPiD * luminance(meanRadiance(latLong));
   std::vector<RayVariance> variances;

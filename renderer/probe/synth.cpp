@@ -146,7 +146,7 @@ class DiscSamples {
       whole = {std::min(whole.first, line.first), std::max(whole.last, line.last)};
     }
     if (lines.empty()) return;
-    // Columns go on beyond the seam; one that is reached from both sides is counted once.
+    // Columns continue beyond the seam; one that is reached from both sides is counted once.
     const int64_t w = size_.width, first = columnOf(whole.first), last = columnOf(whole.last);
     std::vector<int64_t> inside(size_t(std::min(last - first + 1, w)));
     for (const Interval& line : lines)
@@ -173,8 +173,8 @@ class DiscSamples {
   }
   int64_t columnOf(int64_t sample) const { return int64_t(std::floor(double(sample) / samplesX_)); }
 
-  // Those at most the radius R from the centre C, by the haversine formula:
-  // sin^2(R / 2) = sin^2((theta - thetaC) / 2) + sin(theta) sin(thetaC) sin^2((phi - phiC) / 2).
+  // The samples at most the radius R from the centre C, by the haversine formula: sin^2(R / 2) =
+  // sin^2((theta - thetaC) / 2) + sin(theta) sin(thetaC) sin^2((phi - phiC) / 2).
   Interval samplesOfLine(double theta) const {
     const auto haversine = [](double angle) { return std::pow(std::sin(0.5 * angle), 2); };
     const double left = haversine(radius_) - haversine(theta - theta_);

@@ -126,7 +126,7 @@ class Renderer {
     return state_.allocation ? state_.allocation->count(x, y, mean) : mean;
   }
 
-  // They have served to learn from.
+  // These samples only served for learning.
   void forgetRepeated() {
     if (live_) live_->replaced();
     RenderResult own(settings_, integrator_.layers());
@@ -168,7 +168,7 @@ class Renderer {
   bool trains_ = false;  // the pass in progress is part of the guides' training
 };
 
-// Passes until the schedule ends or `stop` is set.
+// Renders passes until the schedule ends or `stop` is set.
 void renderPasses(Renderer& renderer, RenderState& state, const Progress& progress,
                   const std::atomic<bool>& stop, RenderControl* control) {
   RenderResult& result = state.result;

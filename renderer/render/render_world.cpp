@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which integrator renders the settings.
+// Chooses the integrator for the settings.
 #include <algorithm>
 #include <cassert>
 

@@ -35,7 +35,7 @@ double Distortion::distortedFold() const {
   return std::isinf(radius) ? radius : distorted(radius);
 }
 
-// Newton's method, and bisection where it leaves the interval that holds the root.
+// Uses Newton's method, and bisection where that leaves the interval with the root.
 double Distortion::undistorted(double radius) const {
   constexpr int kMaxSteps = 100;
   double low = 0, high = fold();

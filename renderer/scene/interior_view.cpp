@@ -132,9 +132,9 @@ double viewArea(const Panorama& seen, int i) {
   return area;
 }
 
-// Whether the eye stands on a floor: nearly all that is below it are floor, walls and furniture,
-// most of it level or upright. (Below an eye in the hole of a torus is nothing, and within a body
-// that is turned inside out nothing is level.)
+// Whether the eye stands on a floor: nearly everything below it is floor, walls and furniture,
+// mostly level or upright. (Nothing is below an eye in the hole of a torus, and nothing is level
+// within a body that is turned inside out.)
 bool standsOnFloor(const std::vector<Sight>& sights) {
   constexpr double kBelow = -0.2, kLevel = 0.95, kUpright = 0.2;
   constexpr double kMinSeen = 0.9, kMinFlat = 0.6;
@@ -154,8 +154,8 @@ bool contains(const Bounds& box, const dvec3& p) {
          glm::all(glm::lessThanEqual(p, dvec3(box.max)));
 }
 
-// Whether one of the four sides of the model is open: from there, most of the space that the eye
-// sees is seen from outside.
+// Whether one of the four sides of the model is open: from outside it, most of the space that the
+// eye sees is visible.
 bool hasOpenSide(const std::vector<Sight>& sights, const dvec3& eye, const Bounds& box,
                  const OutsideViews& views) {
   constexpr double kMaxShown = 0.5;

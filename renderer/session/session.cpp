@@ -144,7 +144,7 @@ const SessionImage& Session::Implementation::wait() {
   return *result_;
 }
 
-// Only this thread calls back; what others report is passed over.
+// Only this thread calls back; reports of others are ignored.
 void Session::Implementation::report(const char* stage, double fraction) {
   if (callbacks_.progress && std::this_thread::get_id() == ownThread_)
     callbacks_.progress({stage, fraction});
@@ -253,7 +253,7 @@ void Session::Implementation::changeWhatDiffers() {
   lightingIsStale_ = false;
 }
 
-// What has failed half-way may be half of one description and half of another.
+// After a failure half-way, the scene may be a mixture of both descriptions.
 void Session::Implementation::unload() {
   prepared_ = {};
   loaded_.reset();

@@ -64,7 +64,7 @@ std::vector<uint32_t> staticInstances(const Scene& scene, const std::vector<int>
   return still;
 }
 
-// Equal for instances that rays cannot tell from each other.
+// A key that is equal for instances that rays cannot tell apart.
 auto placementOf(const Scene& scene, uint32_t instance, RayMask mask) {
   const Instance& i = scene.instances[instance];
   return std::tuple(i.mesh, i.material, mask, columnsOf(i.toWorld.value_or(Transform{})));
@@ -129,8 +129,8 @@ Accel::Accel(const Scene& scene, const std::vector<RayMask>& masks,
 
 Accel::~Accel() { rtcReleaseScene(scene_); }
 
-// Geometry i of the top scene is instance i of ours; what does not move is one more geometry, so
-// that it is built once.
+// Geometry i of the top scene is instance i of ours; the instances that do not move are one more
+// geometry, so that it is built once.
 void Accel::build() {
   const Scene& scene = described_;
   const FilterUse use = filterUse(scene);

@@ -79,7 +79,7 @@ struct CoincidentSearch {
   void* visitor;
 };
 
-// The surface hides what lies up to rayOffset behind it along the normal: rays start there. By
+// The surface hides others up to rayOffset behind it along the normal: rays start there. By
 // rounding errors a coincident triangle may also lie a little in front. The neighbours of the hit
 // triangle in its mesh touch it at its edges, which does not count.
 void testTriangle(const CoincidentSearch& s, uint32_t instanceIndex, uint32_t triangleIndex) {

@@ -139,7 +139,7 @@ SharedPlaces::SharedPlaces(const Accel& accel) {
   std::vector<float> times{0};
   if (std::ranges::any_of(scene.instances, [](const Instance& i) { return i.motion != nullptr; }))
     times = {0, 0.25f, 0.5f, 0.75f, 1};
-  // More comparisons would take seconds: then every triangle counts as one that shares its place.
+  // More comparisons would take seconds: beyond that, every triangle counts as sharing its place.
   std::atomic<int64_t> budget = 1'000'000 + 64 * int64_t(scene.triangleCount());
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];

@@ -91,7 +91,7 @@ DirectLight::LightSample DirectLight::ofGuide(const GuideRegion& region,
   return {{sample.direction, found.radiance / pdf, pdf}, found.pdf};
 }
 
-// f cos with the MIS weight of a light sample: what its irradiance is multiplied by.
+// f cos with the MIS weight of a light sample: the factor of its irradiance.
 Rgb DirectLight::weighted(const DirectionSample& light, const BsdfValue& bsdf) const {
   return bsdf.fCos * (light.isDelta ? 1 : lightSampleWeight(settings_.mis, light.pdf, bsdf.pdf));
 }
@@ -109,7 +109,7 @@ LightRecord DirectLight::record(const LightPoint& point, const LightSample& ligh
           .bsdfPdf = bsdf.pdf};
 }
 
-// `scattered`: what reaches the viewer per irradiance of the sample. `source`: as
+// `scattered`: the radiance that reaches the viewer per irradiance of the sample. `source`: as for
 // LightGroups::rangeOf().
 void DirectLight::addToGroups(std::optional<size_t> source, const Vertex& vertex,
                               const DirectionSample& light, const Rgb& scattered,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer: what a ray finds that hits nothing.
+// PathTracer: the light that a ray finds if it hits nothing.
 #include "transport/light_groups.h"
 #include "transport/path.h"
 #include "transport/path_settings.h"

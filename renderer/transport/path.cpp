@@ -95,7 +95,7 @@ const CausticGuide* PathTracer::guideOf(const PathState& state) const {
   return state.guideRatio < kLeastRatio ? nullptr : settings_.caustics;
 }
 
-// A bounce that the guide might have chosen. The rest of the first one is recorded.
+// Notes a bounce that the guide might have chosen. The light found after the first one is recorded.
 void PathTracer::noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                             const PathContext& context) {
   constexpr float kLargest = 1e20f;  // no overflow on long paths
@@ -194,7 +194,7 @@ ExtendedPoint PathTracer::extendedPointAt(const PathState& state, const Instance
   Bsdf bsdf(material, extendedPointAt(state, instance, surface),
             state.media.refractiveIndex(surface, state.throughput), surface, -state.ray.direction,
             world_.bsdfTables, mirrorAlpha_);
-  // Bodies have a limit of their own, and a straight passage through a sheet is no bounce.
+  // Bodies have their own limit, and a straight passage through a sheet is no bounce.
   if (limitsKinds_ && !limitKinds(state, bsdf) && surface.material->extended->transmission == 0)
     return false;
   return scatterAs<true>(state, surface, bsdf, context);

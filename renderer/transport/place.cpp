@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer: which of the surfaces at one place a path meets.
+// PathTracer: the surfaces that a path meets where several coincide.
 #include "transport/place.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class PlaceCollector {
 
   int count() const { return count_; }
 
-  // Fronts that pass light from behind, as one; none where an opaque surface blocks that light.
+  // The fronts that pass light from behind, as one; none where an opaque surface blocks that light.
   std::optional<Hit> oneWay() const {
     return oneWay_ && !opaque_ ? std::optional(oneWay_->hit) : std::nullopt;
   }

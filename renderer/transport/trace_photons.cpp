@@ -88,7 +88,7 @@ class Random {
   uint64_t key_, index_ = 0;
 };
 
-// What a task has found, with how many rays.
+// The photons that a task has found, and its number of rays.
 struct Traced {
   std::vector<Photon> photons;
   size_t rays = 0;
@@ -247,7 +247,7 @@ std::vector<Photon> tracePhotons(const World& world, const LightSource& lighting
       rays += some.rays;
     }
     if (photons.empty()) break;
-    // Twice as many as so far, within the budget.
+    // Traces twice as many paths as so far, within the budget.
     const double affordable = double(end) * std::max(budget.rays / double(rays) - 1, 0.0);
     begin = end;
     end = std::min({tasks, 3 * end, end + size_t(std::min(affordable, 1e9))});

@@ -132,7 +132,7 @@ std::vector<WeightedGaussian> spencerGlare(double pixelsPerDegree) {
   };
   if (const double core = kCore / std::numbers::sqrt2; core >= narrowest && core <= widest)
     add(kWeights[0], core);
-  // s = 1 / (2 sigma^2) by equal steps of its logarithm; a Gaussian has the integral pi / s.
+  // Steps s = 1 / (2 sigma^2) equally in its logarithm; a Gaussian has the integral pi / s.
   for (double sigma = widest; sigma > 0 && sigma >= narrowest; sigma /= kRatio) {
     const double s = 1 / (2 * sigma * sigma), step = 2 * std::log(kRatio);
     const double density = kWeights[1] * kFactors[1] * gaussianDensity(3, s) +

@@ -52,7 +52,7 @@ GaussianLine::GaussianLine(double sigma, int length, GaussianMethod method) {
   }
 }
 
-// A mirrored line has the period 2 x length: what reaches further is added to what is nearer. The
+// A mirrored line has the period 2 x length: taps that reach further are added to nearer ones. The
 // distances of a whole half period to both sides are the same pixel.
 void GaussianLine::foldTaps(int length) {
   if (int(taps_.size()) <= length) return;
@@ -67,7 +67,7 @@ void GaussianLine::foldTaps(int length) {
   taps_ = std::move(folded);
 }
 
-// The pixel is at u = (phase + 1/2) / factor - 1/2 from the reduced pixel that it is a part of.
+// The pixel is at u = (phase + 1/2) / factor - 1/2 from the reduced pixel that contains it.
 GaussianLine::Phase GaussianLine::splinePhase(int phase, int factor) {
   const double u = (phase + 0.5) / factor - 0.5, floor = std::floor(u);
   const double t = u - floor, t2 = t * t, t3 = t2 * t;

@@ -42,8 +42,8 @@ class OpenedImage : public ModuleImage {
   }
 
  private:
-  // Whole strips the library inflates by itself: it returns damaged ones as they are, and cuts
-  // those that are longer than zlib would make them. libtiff reads the rows.
+  // The library inflates whole strips by itself: it returns damaged ones as they are, and cuts
+  // strips that are longer than zlib would make them. So rows are read, by libtiff.
   bool readRows(const OIIO::ImageSpec& spec, float* texels) {
     const size_t rowLength = size_t(spec.width) * size_t(spec.nchannels);
     for (int y = 0; y < spec.height; ++y)

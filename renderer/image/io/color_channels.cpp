@@ -15,7 +15,7 @@ std::string inLowerCase(std::string_view text) {
   return lower;
 }
 
-// "ViewLayer" and "Combined" of "ViewLayer.Combined".
+// The segments of a name: "ViewLayer" and "Combined" of "ViewLayer.Combined".
 std::vector<std::string_view> segmentsOf(std::string_view name) {
   std::vector<std::string_view> segments;
   for (size_t begin = 0; begin <= name.size();) {
@@ -93,8 +93,8 @@ Content contentOf(std::string_view segment) {
   return Content::Light;
 }
 
-// Alpha, a normal, a position, a depth; also "N" of the channel "View.N.X". Elsewhere a letter says
-// nothing: the view "A".
+// Whether a letter names alpha, a normal, a position or a depth; also "N" of the channel
+// "View.N.X". Elsewhere a letter has no meaning: the view "A".
 bool isLetterOfNoLight(const std::vector<std::string_view>& segments) {
   const auto is = [](std::string_view segment) {
     return segment.size() == 1 && std::string_view("anpzANPZ").find(segment) != segment.npos;
@@ -110,7 +110,7 @@ Content contentOf(const std::vector<std::string_view>& segments) {
   return content;
 }
 
-// The least is the best; nullopt: no light.
+// The rank of a layer, the least being the best; nullopt: no light.
 constexpr int kUnnamed = 0, kWithBeauty = 5, kOtherLayer = 6, kGrey = 7;
 std::optional<int> colorRank(const std::string& layer) {
   constexpr std::array kLight = {"combined", "beauty", "rgba", "c"};

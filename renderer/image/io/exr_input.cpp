@@ -54,7 +54,7 @@ void sortChannels(std::vector<std::string>& channels) {
             [&](const auto& a, const auto& b) { return key(a) < key(b); });
 }
 
-// Luminance and chroma, whose chroma has half the resolution (ImfRgba.h).
+// Whether the channels are luminance and chroma; the chroma has half the resolution (ImfRgba.h).
 bool isLuminanceChroma(const Imf::ChannelList& channels) {
   const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
   int count = 0;
@@ -116,7 +116,7 @@ class ExrInput::Part {
  public:
   explicit Part(const fs::path& path) : path_(path), file_(path.c_str()) {}
 
-  // Every part's channels; none of deep ones.
+  // Every part's channels; none for deep parts.
   std::vector<PartChannels> parts() const {
     std::vector<PartChannels> parts(size_t(file_.parts()));
     for (int i = 0; i < file_.parts(); ++i) {

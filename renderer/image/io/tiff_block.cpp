@@ -57,7 +57,7 @@ uint64_t TiffBlock::number(uint64_t at, uint64_t count) const {
   return result;
 }
 
-// No more than the file can have.
+// The number of entries, no more than the file can have.
 uint64_t TiffBlock::entriesOf(uint64_t directory) const {
   return std::min<uint64_t>(number(directory, countBytes()), bytes_.size() / entryBytes());
 }
@@ -140,8 +140,8 @@ class Inflater {
   ~Inflater() { inflateEnd(&stream_); }
   Inflater(const Inflater&) = delete;
 
-  // Whether the block is undamaged as far as `budget`, a number of bytes, which what it inflates to
-  // reduces.
+  // Whether the block is undamaged, as far as `budget` allows, a number of bytes that is reduced by
+  // the inflated size.
   bool isSound(std::span<const uint8_t> block, double& budget) {
     inflateReset(&stream_);
     stream_.next_in = const_cast<uint8_t*>(block.data());

@@ -187,7 +187,7 @@ class PixelEquations {
   double weight_ = 0;
 };
 
-// g of one channel.
+// The curve g of one channel.
 std::vector<double> solveChannel(std::span<const Exposure> exposures, int channel,
                                  double smoothness) {
   PixelEquations pixels(exposures, channel);

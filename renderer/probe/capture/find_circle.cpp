@@ -28,8 +28,8 @@ constexpr double kLeastAgreement = 0.95, kLargestError = 1, kMostContradiction =
 // the mean square, for dodecagons 0.4 to 0.98 of it, and more than half a pixel.
 constexpr double kMostRipple = 0.5, kMostRippleShare = 0.38;
 
-// What a circle has on edges. Its rank is the length of the outline on edges beyond what random
-// edges would give.
+// The part of a circle that lies on edges. Its rank is the length of the outline on edges beyond
+// what random edges would give.
 struct Support {
   double share = 0, inside = 0, rank = 0;
 };
@@ -153,7 +153,7 @@ Circle refined(const Image& channel, Circle circle) {
   return circle;
 }
 
-// Fitted to the edges across it, from those within 4 pixels to those within 1.
+// The circle fitted to the edges across it, first within 4 pixels, finally within 1.
 Circle fittedToEdges(const EdgeMap& edges, Circle circle) {
   for (double reach = 4; reach >= 1; reach *= 0.5) {
     std::vector<dvec2> points;
@@ -216,8 +216,8 @@ std::optional<FoundCircle> best(const EdgeMap& edges) {
 }
 
 // Whether the circle is an edge of the picture, not a contour of a smooth one: along a quarter of
-// its radii at least, the steepest slope at the circle is well above the mean one around it, which
-// it equals where radiance changes smoothly. Balls have more than 3 times that.
+// its radii at least, the steepest slope at the circle is well above the mean slope around it; they
+// are equal where radiance changes smoothly. Balls have more than 3 times that.
 bool isSharp(const Image& channel, const Circle& circle) {
   constexpr int kRadii = 360, kAround = 6;
   constexpr double kLeastRatio = 1.5, kLeastShare = 0.25, kNoSlope = 1e-3;

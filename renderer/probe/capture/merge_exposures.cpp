@@ -177,7 +177,7 @@ void checkCount(const std::vector<double>& numbers, size_t files, const char* op
                files);
 }
 
-// What one photograph states and another does not makes their ratio unknown.
+// A property that one photograph states and another does not makes their ratio unknown.
 void checkAllOrNone(const std::vector<std::string>& files,
                     const std::vector<CameraSettings>& settings,
                     std::optional<double> CameraSettings::*member, const char* name) {

@@ -98,7 +98,7 @@ class FlatFields {
   Messages messages_;
 };
 
-// Each exposure with the next longer one.
+// Compares each exposure with the next longer one.
 void checkShifts(std::span<const Exposure> exposures) {
   std::vector<const Exposure*> order;
   for (const Exposure& exposure : exposures) order.push_back(&exposure);
@@ -113,7 +113,7 @@ void checkShifts(std::span<const Exposure> exposures) {
   }
 }
 
-// The files' own, if they state one.
+// The files' own response, if they state one.
 std::string defaultResponse(const PhotographSeries& series, const PhotographLevels& photographs) {
   if (photographs.transfer == Transfer::Other)
     throwInput(

@@ -36,7 +36,7 @@ glm::dvec3 BallReflectance::at(double cosIncidence) const {
 
 namespace {
 
-// Shown, but only where no other photograph shows the direction.
+// Used only where no other photograph shows the direction.
 constexpr double kLeastWeight = 1e-3;
 
 double smoothstep(double x) {

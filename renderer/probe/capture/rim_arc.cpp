@@ -11,8 +11,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-// The functions of the distance d from the outline that the model is made of, as means over a
-// pixel.
+// The model's functions of the distance d from the outline, as means over a pixel.
 struct RimFunctions {
   double outside = 0;  // 1 outside, 0 inside
   double outward = 0;  // d outside

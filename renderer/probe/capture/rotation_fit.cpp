@@ -83,7 +83,7 @@ double MapPair::correlation(const dquat& rotation) const {
   return sum / std::sqrt(powerF_ * powerG_);
 }
 
-// A turn of the map by w moves what was seen at d - w x d to d.
+// A turn of the map by w moves the radiance at d - w x d to d.
 MapPair::Seen MapPair::seenAt(const mat3& back, const vec3& d) const {
   const float step = float(0.5 * texel_);
   Seen seen{dvec3(g_.radiance(back * d)), {}};

@@ -33,7 +33,8 @@ class Blocks {
   int size() const { return size_; }
   int side() const { return int(std::ceil((2 * ball_.circle.radius + 1) / size_)); }
 
-  // nullopt unless all of it is inside the circle and counts. Adds its invalid pixels to `invalid`.
+  // nullopt unless all of the block is inside the circle and counts. Adds its invalid pixels to
+  // `invalid`.
   std::optional<BallSample> sample(int x, int y, size_t& invalid) const {
     const dvec2 corner(left_ + x * size_, top_ + y * size_);
     for (int i = 0; i < 4; ++i)

@@ -55,7 +55,7 @@ struct Difference {
   dvec3 byGain{0};
 };
 
-// A turn of the tile by w moves what was seen at d - w x d to d. nullopt next to the tile's edge,
+// A turn of the tile by w moves the radiance at d - w x d to d. nullopt next to the tile's edge,
 // beyond which it shows nothing.
 std::optional<std::array<dvec3, 3>> derivativesOf(const TileView& view, const dvec3& direction) {
   const double step = 0.5 * view.pixelAngle();

@@ -161,7 +161,7 @@ bool clip(dvec2& from, dvec2& to, const dvec2& min, const dvec2& max) {
 using Corner = std::tuple<float, float, float>;
 Corner cornerAt(const vec3& p) { return {p.x, p.y, p.z}; }
 
-// What is known of an edge while its triangles are visited.
+// The data of an edge while its triangles are visited.
 struct Fold {
   vec3 from, to;
   dvec3 normal;  // of its first triangle

@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-// The distances of lines from those to their vanishing points, as a least-squares problem
+// The distances of lines from the lines to their vanishing points, as a least-squares problem
 // (levenberg_marquardt.h).
 struct CentredLine {
   int axis;
@@ -40,8 +40,8 @@ class LineProblem {
   // the axis; of any length.
   static glm::dvec2 flow(const LineView& view, const CentredLine& line);
 
-  // Signed distances of the second ends. The unknowns: rotation about the camera's axes, logarithm
-  // of the focal length.
+  // The residuals are signed distances of the second ends. The unknowns: rotation about the
+  // camera's axes, logarithm of the focal length.
   bool residuals(const LineView& view, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian) const;
   LineView moved(const LineView& view, const Eigen::VectorXd& step) const;
 
@@ -189,7 +189,7 @@ double alongAxis(const dvec3& from, int axis, const dvec3& direction) {
 
 dvec3 positionOf(const SolvedCamera& camera, const std::vector<ObservedLine>& lines,
                  const LinePlacement& placement, const std::string& file) {
-  // The height that the lines of known length give, by least squares.
+  // The height from the lines of known length, by least squares.
   double product = 0, squares = 0;
   std::optional<dvec3> origin;  // on the ground, for a camera of height 1
   for (const ObservedLine& line : lines) {

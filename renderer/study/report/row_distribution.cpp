@@ -44,7 +44,7 @@ struct TexelPdf {
   }
   double integral() const { return (left + 2 * centre + right) / 4; }
 
-  // The position in [0, 1] to whose left lies this part of the integral.
+  // The position in [0, 1] that has this part of the integral on its left.
   double position(double part) const {
     const double leftHalf = (left + centre) / 4, rightHalf = (centre + right) / 4;
     const double mass = part * (leftHalf + rightHalf);

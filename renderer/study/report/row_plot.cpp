@@ -66,7 +66,8 @@ struct LuminanceAxis {
     const double power = std::log10(luminance);
     return kPlotTop + height * (1 - std::clamp((power - first) / (last - first), 0., 1.));
   }
-  // Powers of ten, not all of many; with twice and five times as much between two or three.
+  // Powers of ten, only some if there are many; with twice and five times each if there are two or
+  // three.
   std::vector<double> ticks() const {
     std::vector<double> ticks;
     const int step = (last - first + 5) / 6;
