@@ -206,7 +206,7 @@ TEST(Coincident, TouchingGlassAndWaterRefractAsOneBoundary) {
     if (!waterFirst) addSlab(scene, bodyOf(1.33f, Rgb(0)), 0, 1);
     expectColor(meanInWhite(scene, above(), 64), Rgb(1), 0.01f, "white");
     Material black = lambert(Rgb(0));
-    addSquare(scene, black, -1, true);  // what is seen is reflected
+    addSquare(scene, black, -1, true);  // the camera sees a reflection
     // Incoherent layers (as of a pile of plates): r / (1 - r) adds.
     double ratio = 0;
     for (const double r : {reflectance(1, 1.5), reflectance(1.5, 1.33), reflectance(1.33, 1)})

@@ -143,7 +143,7 @@ TEST(ImageHeaders, GammaAndPrimariesOfAPng) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-6f);
   };
   expectNear(read(""), srgb);
-  expectNear(read(chunk("gAMA", {45455})), srgb);  // what writers of sRGB state
+  expectNear(read(chunk("gAMA", {45455})), srgb);  // as writers of sRGB state
   expectNear(read(chunk("gAMA", {100000})), fraction);
   expectNear(read(chunk("gAMA", {50000})), fraction * fraction);
   expectNear(read(chunk("gAMA", {0})), srgb);

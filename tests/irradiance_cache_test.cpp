@@ -198,7 +198,7 @@ TEST(IrradianceCache, WeightsFallToNothing) {
   EXPECT_NEAR(cache.find({0.3001f, 0, 0}, up)->x, 1, 0.01f);  // the second one begins
   EXPECT_NEAR(cache.find({0.4f, 0, 0}, up)->x, 2, 1e-5f);
   EXPECT_FALSE(cache.find({0.1f, 0, 0}, {1, 0, 0}));
-  EXPECT_FALSE(cache.find({0.1f, -0.2f, 0}, up));  // behind what the record sees
+  EXPECT_FALSE(cache.find({0.1f, -0.2f, 0}, up));  // behind the surfaces that the record sees
   EXPECT_TRUE(cache.find({0.1f, 0.2f, 0}, up));
 }
 

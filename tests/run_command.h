@@ -35,7 +35,7 @@ CommandResult runExecutable(const std::vector<std::string>& arguments,
                             const std::string& signalAt = "", int signal = SIGINT,
                             const CommandLimits& limits = {});
 
-// The same in the command server, which starts faster; what a file says of its command line is
+// The same in the command server, which starts faster; the command line that a file states is
 // wrong.
 CommandResult runCommand(const std::vector<std::string>& arguments);
 

@@ -173,7 +173,7 @@ TEST(ClippedSun, IsTheMiddleOfTheLargestPlateau) {
 }
 
 struct Loop {
-  dvec3 truth;  // the irradiance of what is clipped, on a surface that faces it
+  dvec3 truth;  // the irradiance of the clipped light, on a surface that faces it
   SunFromBall found;
   ClippedSun direction;
 };

@@ -160,7 +160,7 @@ class Bake {
     throwInput("{}: has no triangle with an area; there is nothing to bake", options_.scene);
   }
 
-  // Pages as floats and bytes, and what is kept of each texel's point.
+  // Pages as floats and bytes, and the data kept for each texel's point.
   void checkPageMemory(int size) const {
     constexpr double kBytesPerTexel = 7 * sizeof(float) + 20 + sizeof(BakePoint) +
                                       sizeof(PointResult) + 2 * sizeof(Rgb) + sizeof(int);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chromeball camera solve` prints.
+// The output of `chromeball camera solve`.
 #pragma once
 
 #include <string>

@@ -40,7 +40,7 @@ struct CompareArguments {
   std::optional<int> referenceSamples;
 };
 
-// Each strategy with each integrator, but those that name one.
+// Combines each strategy with each integrator, except rows that name one.
 std::vector<std::string> resolveRows(const std::vector<std::string>& strategies,
                                      const std::vector<std::string>& integrators) {
   std::vector<std::string> names;

@@ -23,7 +23,7 @@ struct ImageDenoiseArguments {
   bool quiet = false;
 };
 
-// No number of a render is as large.
+// No number in a render is as large.
 constexpr float kMaxRadiance = 1e15f, kMaxUnit = 1e6f;
 
 struct Reader {

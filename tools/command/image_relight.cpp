@@ -84,7 +84,7 @@ Groups readGroups(const ImageFile& file, const std::string& path) {
   return groups;
 }
 
-// In the order of the groups; 1 for those that are not named.
+// The gains in the order of the groups; 1 for groups that are not named.
 std::vector<Rgb> gainsOf(const Groups& groups, const std::map<std::string, Rgb>& given) {
   std::vector<Rgb> gains(groups.names.size(), Rgb(1));
   for (const auto& [name, gain] : given) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders one image, with a progress bar, and with what is written and shown meanwhile.
+// Renders one image, with a progress bar, and writes and shows it meanwhile.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@
 
 namespace chromeball {
 
-// Says after each pass what there is so far.
+// Reports the image so far after each pass.
 class PassReport {
  public:
   std::string of(const RenderResult& result);

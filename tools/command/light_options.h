@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that commands about lights share: how many faces an icosphere has, and what part of the
-// probe gives no light.
+// Options that commands about lights share: the number of faces of an icosphere, and the part of
+// the probe that gives no light.
 #pragma once
 
 #include <cstdint>

@@ -102,7 +102,7 @@ void warnOfLosses(const LightsArguments& arguments, const MadeLights& made, Ligh
 
 std::string rgbText(const dvec3& c) { return fmt::format("{:.4g} {:.4g} {:.4g}", c.x, c.y, c.z); }
 
-// Writes the picture, and says what it shows.
+// Writes the picture, and prints what it shows.
 void writeSphere(const std::string& file, const Image& latLong, const MadeLights& made,
                  int subdivisions) {
   const std::vector<vec3> normals = icosphereNormals(subdivisions);
@@ -131,7 +131,7 @@ LightUnits unitsOf(const LightsArguments& arguments) {
                                  : parseLightUnits({arguments.units, "--light-units"});
 }
 
-// Polygons in place of a method.
+// Makes polygons instead of lights by a method.
 void runPolygonsOf(const LightsArguments& arguments) {
   if (!arguments.method.empty())
     throwInput("--method: excludes --suggest and --polygons; give one");

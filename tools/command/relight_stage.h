@@ -37,7 +37,7 @@ struct RelightOptions {
   const std::string& source() const { return isOfPhotographs() ? images : stage; }
 };
 
-// Throw InputError.
+// These throw InputError.
 void runRelitPicture(const RelightOptions& a);
 void runReflectanceFunction(const RelightOptions& a);
 void runRelightPreview(const RelightOptions& a);

@@ -84,8 +84,8 @@ std::optional<RenderPart> identified(const LoadedScene& loaded) {
   return RenderPart{renderIdentity(loaded), {}};
 }
 
-// Adds the state of a part to its image. After the render, which solves the reflectance of a local
-// scene.
+// Adds the state of a part to its image. To be called after the render, which solves the
+// reflectance of a local scene.
 void addState(const LoadedScene& loaded, std::optional<RenderPart>& part, JobResult& result) {
   if (!part) return;
   part->plan = finishPlan(loaded, result.render);
@@ -135,8 +135,8 @@ bool isFinished(const SequenceFrame& frame) {
   return std::ranges::all_of(files, exists) && (!stats || exists(*stats));
 }
 
-// The probes of all frames that are to be rendered: a render of hours does not end at the first
-// that is missing.
+// The probes of all frames that are to be rendered: so a render of hours does not end at the first
+// missing one.
 void checkProbes(const Sequence& sequence, bool overwrites) {
   std::vector<std::string> missing;
   std::string location;

@@ -18,7 +18,7 @@ struct DoricColumn {
 // Radius to the arrises at a height of the shaft: linear taper, and a parabola for the entasis.
 double radiusAt(const DoricColumn& column, double height);
 
-// Standing on the origin. Flutes are arcs of circles of a depth of 7% of the radius.
+// The column stands on the origin. Flutes are arcs of circles of a depth of 7% of the radius.
 Surface shaft(const DoricColumn& column);
 Surface capital(const DoricColumn& column);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the servers of pages for this machine have in common.
+// Functions that the servers of pages for this machine share.
 #pragma once
 
 #include <httplib.h>
