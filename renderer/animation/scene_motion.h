@@ -42,7 +42,7 @@ class MotionError {
  private:
   // The largest errors that were found, in metres or degrees.
   struct Way {
-    double length = 0;  // from what there is at the opening
+    double length = 0;  // of the motion, from the opening on
     double miss = 0;    // beyond rounding errors
 
     void addPlaces(const vec3& opening, const vec3& moved, const vec3& truth);

@@ -20,7 +20,7 @@ struct World;
 struct Occlusion {
   bool ambient = false;       // diffuse
   bool reflection = false;    // specular and transmitted
-  float distance = INFINITY;  // of what blocks diffuse light, metres
+  float distance = INFINITY;  // within which surfaces block diffuse light, metres
   bool uniformBent = false;   // bent normals are unweighted means (HDRI book, section 9.8.2)
 };
 

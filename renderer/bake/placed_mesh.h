@@ -54,7 +54,7 @@ struct BakedGeometry {
   std::vector<Triangle> triangles;     // counter-clockwise from the front
   std::vector<vec2> lightmapUv;        // v down; empty: none
   std::vector<vec4> colors;            // linear; empty: the mesh's own
-  std::vector<vec3> light;             // what was baked, linear and unscaled; empty: none
+  std::vector<vec3> light;             // the baked light, linear and unscaled; empty: none
   std::vector<NamedArray> attributes;  // more of the vertices
 
   explicit BakedGeometry(const PlacedMesh& source) : placed(&source) {}

@@ -17,8 +17,8 @@ struct Remedy {
 
 struct Message {
   enum class Kind {
-    Note,     // what was detected or chosen
-    Warning,  // what may spoil the image
+    Note,     // something detected or chosen
+    Warning,  // something that may spoil the image
   };
   Kind kind;
   std::string text;  // one line, without a full stop

@@ -27,7 +27,7 @@ Image scaledPlate(const Image& image, int width, int height, const std::string& 
 
 struct PlateScale {
   Rgb scale{1};        // factor on the probe's radiance
-  double scatter = 0;  // of the ground's luminance: half of what 68% of its pixels span / median
+  double scatter = 0;  // of the ground's luminance: half the span of 68% of its pixels / median
   size_t pixels = 0;   // that show the ground
 };
 

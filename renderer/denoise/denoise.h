@@ -34,7 +34,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
 struct Denoised {
   Image color;       // RGB radiance; RGBA of a shadow catcher
   Image error;       // one channel: estimated standard error of luminance
-  Image whole = {};  // to which errors are relative; empty: the colour
+  Image whole = {};  // errors are relative to it; empty: the colour
 };
 
 // The sum of the parts; negative radiance is set to 0.

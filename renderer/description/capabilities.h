@@ -16,12 +16,12 @@ namespace chromeball {
 // A property of a description that another one may exclude.
 struct Feature {
   std::string_view name;     // "a composite", for documentation
-  std::string_view setting;  // whose origin messages name, and that may end a conflict; empty: none
+  std::string_view setting;  // messages name its origin, and it may end a conflict; empty: none
   bool (*isIn)(const RenderDescription&);
 };
 
 struct Conflict {
-  const Feature& feature;  // at whose setting the message begins
+  const Feature& feature;  // the message begins with its setting
   const Feature& with;
   std::string_view why;  // and what to do
 };

@@ -36,7 +36,7 @@ struct Shutter {
 struct CameraDescription {
   std::optional<CameraEntry> placed;  // nullopt: one of the models, or one that frames them
   std::optional<std::string> name;    // of the models'; nullopt: the first
-  std::optional<std::string> file;    // from which it was read
+  std::optional<std::string> file;    // that it was read from
   std::optional<Lens> lens;
   std::optional<Optics> optics;
   double orbit = 0;                // turn around the models, degrees

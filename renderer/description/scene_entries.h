@@ -18,7 +18,7 @@ struct ModelEntry {
   std::string file;
   Transform placement;  // translation * rotation * scale
   GltfChoice choice;
-  glm::dvec3 translationRest{0};  // what float rounds off the translation
+  glm::dvec3 translationRest{0};  // the part of the translation that float rounds off
 };
 
 // The camera of a file, in world coordinates. It is rounded to float relative to the scene's

@@ -180,7 +180,7 @@ namespace {
 constexpr int kAllocationReach = 2;  // windows are 5 x 5 pixels, without the one in the middle
 constexpr float kMaxRate = 64;       // keeps the work of a tile bounded
 constexpr double kMaxCount = 4e9;    // of a pixel
-constexpr uint64_t kPixelsPerMeter = 256;  // one of them measures the exposure
+constexpr uint64_t kPixelsPerMeter = 256;  // one of so many measures the exposure
 
 // Gaussian with a standard deviation of one pixel.
 double windowWeight(int dx, int dy) {

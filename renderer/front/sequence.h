@@ -26,7 +26,7 @@ class Sequence {
 
   const std::vector<int>& numbers() const { return numbers_; }  // empty: a still
   SequenceFrame frame(int number) const;                        // throws InputError
-  Messages messages() const;  // what of the scene file has no effect on frames
+  Messages messages() const;  // about keys of the scene file without effect on frames
 
  private:
   const SceneFile& scene_;

@@ -87,7 +87,7 @@ class CausticLobes {
 
 // Light that was found behind a bounce where the guide has lobes.
 struct BounceRecord {
-  float found;              // |luminance| of what the path added to its pixel's sample
+  float found;              // |luminance| that the path added to its pixel's sample
   float lobesPdf, bsdfPdf;  // of the bounce
   float fraction;           // of such bounces that came from the lobes
 };

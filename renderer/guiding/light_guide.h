@@ -71,7 +71,7 @@ struct LightRecord {
   vec3 position, normal;  // of the vertex
   vec3 direction;         // unit, towards the light
   float integrand;        // f cos L, luminance
-  float density;          // with which both techniques together sampled the direction, pdf
+  float density;          // pdf of the direction by both techniques together
   float strategyPdf;      // of the strategy's light samples, without the guide
   float bsdfPdf;
 };

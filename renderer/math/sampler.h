@@ -51,9 +51,9 @@ inline constexpr int kLens = 2;      // 2
 inline constexpr int kVertex = 4;    // first block
 inline constexpr int kLight = 0;     // 2: direction towards the probe
 inline constexpr int kBsdf = 2;      // 2: direction of the next ray
-inline constexpr int kLobe = 4;      // 1: which lobe
+inline constexpr int kLobe = 4;      // 1: choice of a lobe
 inline constexpr int kRoulette = 5;  // 1
-inline constexpr int kEmitter = 6;   // 2: which triangle and where on it
+inline constexpr int kEmitter = 6;   // 2: choice of a triangle and of a point on it
 // 1 each: strategy or guide; BSDF or guide. Shared with kEmitter: the estimates of probe, emitters
 // and the rest of the path are added, so they need not be independent.
 inline constexpr int kGuide = 6, kBounce = 7;

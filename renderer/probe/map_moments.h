@@ -39,7 +39,7 @@ struct RadianceMoments {
 // high, less at the map's edges. Takes a third of 96 bytes a texel.
 class MapMoments {
  public:
-  explicit MapMoments(const Image& latLong);  // which must outlive this
+  explicit MapMoments(const Image& latLong);  // `latLong` must outlive this
 
   struct Node {
     int level, x, y;

@@ -18,7 +18,7 @@ struct PolygonSource {
   SphericalPolygon polygon;
   dvec3 radiance;
   double coveredTexels = 0;      // of the map; 0: smaller than a texel, or between points of them
-  std::array<dvec3, 3> taken{};  // vector irradiance of each channel of what the map had there
+  std::array<dvec3, 3> taken{};  // vector irradiance of the light taken from the map, by channel
 
   // The source as one directional light: the unit direction of the luminance taken, and the
   // irradiance in W/m^2 of a surface that faces it.

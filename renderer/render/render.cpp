@@ -175,7 +175,7 @@ void renderPasses(Renderer& renderer, RenderState& state, const Progress& progre
   while (!stop) {
     if (state.finished.empty()) {
       const uint32_t wanted = state.schedule.next(state.done, result.film);
-      if (wanted <= state.done) return progress(1);  // what was left was estimated
+      if (wanted <= state.done) return progress(1);  // the rest was only an estimate
       renderer.startPass(wanted);
     }
     const auto pauses = [&] { return control && control->wantsPause(state); };

@@ -25,7 +25,7 @@ struct RenderResult {
   // Adds the samples of a part of the image, whose first pixel is this one's pixel (x, y).
   void add(const RenderResult& part, int x, int y) { addPixels(part, x, y), addTotals(part); }
   void addPixels(const RenderResult& part, int x, int y);  // thread-safe for different pixels
-  void addTotals(const RenderResult& part);                // what is not per pixel
+  void addTotals(const RenderResult& part);                // numbers that are not per pixel
   // Takes the pixels of a result with the same settings.
   void copyPixels(const RenderResult& from, const PixelRect& rect);
   // Only these pixels, with the names of the groups.
@@ -59,7 +59,7 @@ struct RenderResult {
 // Data that approximate renders use and that other renders may reuse.
 struct RenderAids {
   const EnvironmentLight* environment = nullptr;  // the integrators that use it need one
-  IrradianceCache* cache = nullptr;  // with RenderSettings::cacheError: gets what it lacks
+  IrradianceCache* cache = nullptr;  // with RenderSettings::cacheError: gets missing records
 };
 
 // Renders until the limit of samples, time or noise is reached, or `stop` is set. Each pass covers

@@ -152,7 +152,7 @@ class MovingCamera {
     glm::quat frame;  // turns the axes to right, up and back
     float fov, halfHeight;
   };
-  Camera lens_;  // what does not move
+  Camera lens_;  // properties that do not move
   float aspectRatio_;
   std::vector<Key> keys_;
 };

@@ -52,7 +52,7 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
   std::vector<SunLamp> suns;         // in addition to a probe's
-  std::vector<AmbientLamp> ambient;  // likewise
+  std::vector<AmbientLamp> ambient;  // likewise, in addition to a probe
   std::optional<Image> environment;  // the model's own light probe: lat-long, already repaired
   std::vector<std::string> nodeNames;
   std::vector<std::string> notes;  // hints for the user: "FILE: ..."

@@ -81,7 +81,7 @@ LiveImage::Buffer& LiveImage::freeBuffer() {
   const auto isFree = [](const Buffer& b) { return b.image && b.image.use_count() == 1; };
   const auto found = std::ranges::find_if(buffers_, isFree);
   if (found != buffers_.end()) {
-    std::atomic_thread_fence(std::memory_order_acquire);  // what its last owner has read is read
+    std::atomic_thread_fence(std::memory_order_acquire);  // after all reads by its last owner
     return *found;
   }
   std::swap(buffers_[0], buffers_[1]);  // the one that was returned last is kept

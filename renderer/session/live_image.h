@@ -39,12 +39,12 @@ class LiveImage {
 
   const LoadedScene& loaded_;
   LiveResult& live_;
-  std::mutex reading_;  // the render reads what is left at its end
+  std::mutex reading_;  // at its end the render reads the rest
   std::optional<FinishPlan> plan_;
   TileGrid grid_{0, 0};
   std::vector<double> samples_;           // by tile
   OutputImage current_;                   // of all tiles that were read; not of a composite
-  std::optional<RenderResult> composed_;  // what a composite is made of
+  std::optional<RenderResult> composed_;  // the input of a composite
   std::array<Buffer, 2> buffers_;
 };
 

@@ -21,7 +21,7 @@ struct LoadedScene {
                                   // the local scene's reflectance
   Scene scene;
   Camera camera;            // the camera of the image
-  AutomaticView view;       // what the models decide of it
+  AutomaticView view;       // the parts that the models decide
   LoadedProbe loadedProbe;  // properties of its file; the map itself moves to `probe`
   Probe probe;              // black if only the scene's own lights are used
   std::optional<Surroundings> surroundings;  // the model is inside

@@ -66,7 +66,7 @@ inline vec3 normalThatReflects(const vec3& normal, const vec3& geometricNormal, 
 // The lobes of a BSDF as environment mapping sees them (HDRI book, section 9.8.1).
 
 struct MapLobe {
-  Rgb albedo;       // towards the viewer: what it reflects of uniform radiance 1
+  Rgb albedo;       // radiance reflected towards the viewer under uniform radiance 1
   vec3 direction;   // unit: a diffuse lobe's normal, else where the lobe's middle points
   bool isDiffuse;   // reflects the irradiance
   float roughness;  // perceptual, unless it is diffuse; 0 if it is smooth

@@ -48,7 +48,7 @@ struct Study {
 
   std::string referenceFile;                 // empty: the reference is rendered by
   std::string referenceStrategy;             // this strategy with
-  int referenceSamples = 0;                  // so many samples per pixel in all parts together
+  int referenceSamples = 0;                  // samples per pixel of all parts together
   static constexpr int kReferenceParts = 8;  // independent; their variance gives the error
   static constexpr int kMinRepeats = 3;      // the minimum to estimate the variance of a strategy
 

@@ -35,7 +35,7 @@ class BuiltGeometry {
 
   const Scene& scene() const { return scene_; }
   RTCDeviceTy* device() const { return device_; }
-  int builds() const { return builds_; }  // of meshes and of what does not move, so far
+  int builds() const { return builds_; }  // so far, of meshes and of the instances that do not move
 
   // Begins a build: keeps the structures of an earlier one for meshes that the scene still has.
   void begin(FilterUse filters);

@@ -30,7 +30,7 @@ class GuidedBsdf {
     float bsdfPdf = 0;   // without the guide; 0 for a delta
     float lobesPdf = 0;  // 0 where the bounce is not guided
     float fraction = 0;  // of guided bounces
-    float ratio = 1;     // pdf / BSDF pdf, also of a delta: what the guide divides the weight by
+    float ratio = 1;     // pdf / BSDF pdf, also of a delta: the guide divides the weight by it
   };
   // False if the light is absorbed.
   bool sample(const PixelSampler& sampler, Bounce& out) const;

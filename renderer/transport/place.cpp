@@ -69,7 +69,7 @@ class PlaceCollector {
  private:
   struct Layer {
     Hit hit;
-    int rank;  // before those with higher ones
+    int rank;  // crossed before surfaces of higher rank
   };
   static constexpr int kEntered = 0, kSheet = 1, kLeft = 2;  // ranks of surfaces that transmit
 

@@ -35,7 +35,7 @@ struct World {
   const Accel accel;
   const SceneSources sources;
   const SharedPlaces sharedPlaces;
-  const BsdfTables bsdfTables;  // those that its materials need
+  const BsdfTables bsdfTables;  // the tables that its materials need
 };
 
 }  // namespace chromeball

@@ -98,9 +98,9 @@ void GaussianLine::applyExact(std::span<double> line, std::vector<double>& scrat
 void GaussianLine::applyFast(std::span<double> line, std::vector<double>& scratch) const {
   const int reach = int(taps_.size()) - 1, n = int(line.size()), f = factor_;
   const int first = -kSplineReach;                            // reduced pixel of `filtered`
-  const int count = (n - 1) / f + 1 + 2 * kSplineReach;       // of these
+  const int count = (n - 1) / f + 1 + 2 * kSplineReach;       // number of them
   const int begin = first - reach - 2 * kSplineReach;         // reduced pixel of `sums`
-  const int extended = count + 2 * reach + 4 * kSplineReach;  // of these; 4 at each end are cut
+  const int extended = count + 2 * reach + 4 * kSplineReach;  // likewise; 4 at each end are cut
   scratch.assign(size_t(extended + count), 0.0);
   const std::span<double> sums(scratch.data(), size_t(extended));
   const std::span<double> filtered(scratch.data() + extended, size_t(count));

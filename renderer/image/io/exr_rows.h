@@ -74,7 +74,7 @@ class ExrRowsReader {
   int height() const;
   const std::vector<std::string>& channels() const;
   const Metadata& metadata() const;
-  const std::optional<Placement>& placement() const;  // in the display window, if not that
+  const std::optional<Placement>& placement() const;  // in the display window, if it differs
   const std::optional<Chromaticities>& primaries() const;
 
   // All channels of `count` rows from `top` on.

@@ -243,7 +243,7 @@ class Reader {
   size_t position_ = 0;
   int width_ = 0, height_ = 0;  // of the rows, as they are stored
   bool areColumns_ = false, reversesOrder_ = false, reversesRows_ = false;
-  double exposure_ = 1;  // the products of these lines
+  double exposure_ = 1;  // the products of EXPOSURE and COLORCORR
   glm::dvec3 correction_{1}, scale_{1};
   std::optional<Chromaticities> primaries_;
   std::map<std::pair<Message::Kind, std::string>, int> repeated_;

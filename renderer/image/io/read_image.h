@@ -54,13 +54,13 @@ struct ImageFile {
   Image image;
   std::vector<std::string> channels;
   Metadata metadata;
-  std::optional<Placement> placement = {};  // in the display window of an .exr, if it is not that
+  std::optional<Placement> placement = {};  // in the display window of an .exr, if it differs
   bool integers = false;  // the file has integers per channel, so no texel is above 1
   int bits = 0;           // of the integers, 8 or 16
   std::string part = {};  // the name of the part that was read, of an .exr with several
   std::optional<Chromaticities> primaries = {};  // of the colour, if these are not Rec. 709's
   std::optional<Transfer> transfer = {};         // of Levels, if the file states one
-  Messages messages = {};  // what was chosen, or was not understood; each "FILE: ..."
+  Messages messages = {};  // choices, and contents not understood; each "FILE: ..."
 };
 
 // Only the attributes of an .exr.

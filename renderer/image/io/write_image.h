@@ -31,7 +31,7 @@ struct OutputImage {
   std::vector<Layer> layers;
   Metadata metadata;
   std::optional<Placement> placement;   // of an .exr
-  std::function<void(Archive&)> state;  // what else an .exr holds (exr_state.h); may be empty
+  std::function<void(Archive&)> state;  // further contents of an .exr (exr_state.h); may be empty
 };
 
 // Throws InputError unless `path` ends in .exr, .hdr, .pfm or .png.

@@ -40,7 +40,7 @@ MergedExposures mergeExposures(std::span<const Exposure> exposures, const Respon
 
 struct PhotographLevels {
   std::vector<Image> levels;  // as encoded, divided by `white`; three channels; of one size
-  std::optional<Chromaticities> primaries;  // of these channels; nullopt: Rec. 709's, or grey
+  std::optional<Chromaticities> primaries;  // of the channels; nullopt: Rec. 709's, or grey
   std::optional<Transfer> transfer;         // that the files state
   int bits = 0;                             // of the files' channels; 0: floats
   float white = 1;                          // the texel of the files that is level 1
