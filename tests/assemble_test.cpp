@@ -79,7 +79,7 @@ TEST(SlowAssemble, TwoViewsReturnTheProbe) {
     }
 }
 
-// In the blind cone, and around it, which few pixels of the rim show.
+// The error is in the blind cone, and around it, where few pixels of the rim show the probe.
 TEST(SlowAssemble, OneViewIsWrongBehindTheBall) {
   const Image map = normalised(studioProbe({512, 256}));
   const Probe probe(map);
@@ -108,7 +108,7 @@ TEST(SlowAssemble, OneViewIsWrongBehindTheBall) {
   EXPECT_LT(errorBehind(both), 0.3 * errorBehind(alone));
 }
 
-// Views of a sharp room that is turned and exposed otherwise than given.
+// Views of a sharp room, with turns and exposures that differ from the given ones.
 TEST(SlowAssemble, ViewsAreTurnedAndExposedToMatch) {
   const Image map = normalised(studioProbe({512, 256}));
   const Probe probe(map);

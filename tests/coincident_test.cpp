@@ -310,7 +310,7 @@ TEST(BlendedBody, LightSamplesAndBouncesAgree) {
   EXPECT_NEAR(meanInWhite(scene, under, 4096, "uniform").x, sampled, 0.01f * sampled);
 }
 
-// More of one instance at one place than a ray could visit.
+// More copies of one instance at one place than a ray could visit.
 TEST(Coincident, EqualInstancesCostNothing) {
   Scene scene;
   addSquare(scene, lambert(kRed), 0, true);

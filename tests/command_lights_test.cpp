@@ -115,7 +115,7 @@ TEST(CommandLights, SpheresAndTheTableAgree) {
   EXPECT_NEAR(max / tableMax, 1, 1e-3);
 }
 
-// Options that have no effect are said.
+// Options that have no effect are reported.
 TEST(CommandLights, ASeedOfNoStochasticMethodIsSaid) {
   const TemporaryFolder folder;
   const std::string probe = folder / "studio.exr";
@@ -231,7 +231,7 @@ TEST(SlowCommandLights, ErrorPlotOfCountsInAnyOrder) {
   EXPECT_EQ(plotOf("median-cut", "2,8,32"), plotOf("median-cut,median-cut", "32,2,8,2,32"));
 }
 
-// What a file cannot hold is said: ambient light, angles, units, many lights.
+// A message names what a file cannot hold: ambient light, angles, units, many lights.
 TEST(SlowCommandLights, WarnsOfWhatAFileLoses) {
   const TemporaryFolder folder;
   const std::string probe = folder / "probe.exr";

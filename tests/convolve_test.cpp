@@ -93,7 +93,7 @@ TEST(Convolve, ByACosineIsIrradianceOverPi) {
   const std::vector<dvec3> exact = exactIrradiance(map, axes);
   dvec3 mean(0);
   for (const dvec3& e : exact) mean += e / kPiD / double(exact.size());
-  // The last has the general sums.
+  // The last of them uses the general sums.
   for (const ZonalKernel& kernel :
        {ZonalKernel::phong(1), ZonalKernel::ggx(1), ZonalKernel::phong(1.00001)}) {
     const std::vector<dvec3> found = convolve(map, kernel, axes);

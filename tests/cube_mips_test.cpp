@@ -41,8 +41,8 @@ dvec3 openGlDirection(int face, double s, double t) {
   }
 }
 
-// Each level of a gradient has its closed form, where OpenGL looks it up; to a tenth of what it
-// changes over a texel of the map.
+// Each level of a gradient has its closed form, where OpenGL looks it up; to a tenth of its change
+// over a texel of the map.
 TEST(SlowCubeMips, LevelsOfAGradient) {
   const dvec3 slope(0.5, -0.3, 0.2);
   const std::vector<CubeLevel> levels =

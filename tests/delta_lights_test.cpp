@@ -253,7 +253,7 @@ TEST(SlowDeltaLights, laterHitsSampleEveryContributingLight) {
         EXPECT_NEAR(few[k] / all[k], 1, 0.02) << name << ", " << c.name;
         EXPECT_NEAR(fewBelow[k] / all[k], allBelow[k] / all[k], 0.02) << name << ", " << c.name;
       }
-      // Else the comparison of light from below would say nothing.
+      // Else the comparison of light from below would be meaningless.
       EXPECT_GT(allBelow.y, 5e-4 * all.y) << name << ", " << c.name;
     }
   }

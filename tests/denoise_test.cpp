@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The denoiser: it removes noise, keeps what is exact or explained by features, and knows its
-// error.
+// The denoiser: it removes noise, keeps details that are exact or explained by features, and knows
+// its error.
 #include "denoise/denoise.h"
 
 #include <gtest/gtest.h>
@@ -268,7 +268,7 @@ TEST(Denoise, LimitsFireflies) {
   EXPECT_NEAR(found / added, 1, 0.1);
 }
 
-// Nor does it where a bright object is in the filter's window: the dark pixels between both stay
+// The same holds where a bright object is in the filter's window: the dark pixels between both stay
 // dark.
 TEST(Denoise, LimitsFirefliesBesideBrightPixels) {
   DenoiseInput input = noisy(0.02f, [](int x, int) { return x < kWidth / 2 ? 0.2f : 8.0f; });
@@ -408,7 +408,7 @@ TEST(Denoise, ExponentialIsAccurate) {
   EXPECT_EQ(expOfMinus(splat8(1e30f))[0], 0);
 }
 
-// What a render keeps for the denoiser.
+// The layers that a render keeps for the denoiser.
 struct Rendered {
   DenoiseInput input;
   Image mean;

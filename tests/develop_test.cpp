@@ -178,7 +178,7 @@ TEST(Develop, VignetteIsThatOfAThinLens) {
   for (const auto& [x, y] : {std::pair(0, 0), {299, 0}, {0, 199}, {299, 199}})
     EXPECT_NEAR(image.rgb(x, y).x, expected, 1e-6);
   EXPECT_NEAR(image.rgb(150, 100).x, 2, 1e-4);
-  // A part of the picture darkens as the whole.
+  // A part of the picture darkens like the whole.
   Image part = filled(20, 10, 2);
   vignette(part, 0.4, {280, 190, 300, 200, 60});
   EXPECT_EQ(part.rgb(19, 9), image.rgb(299, 199));

@@ -142,7 +142,7 @@ TEST(EnvironmentMap, CavitiesAreTooBrightAndOccludedOnesTooDark) {
   EXPECT_NEAR(mapped, 0.7, 1e-3);
   EXPECT_GT(mapped, 1.1 * truth);
   EXPECT_LT(occluded, 0.95 * truth);
-  // One bounce is all that ambient occlusion knows.
+  // Ambient occlusion accounts for one bounce only.
   EXPECT_NEAR(occluded, mean("importance+direct"), 5e-3);
   EXPECT_EQ(mean("importance+environment-map+ao"), occluded);
 }

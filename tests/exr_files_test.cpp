@@ -105,7 +105,7 @@ TEST(ExrFiles, ImagesAreTheirDisplayWindows) {
   check({{{-4, -4}, {19, 11}}, {{0, 0}, {15, 7}}});  // overscan
   check({{{3, -2}, {30, 5}}, {{0, 0}, {15, 7}}});    // some of both
   check({{{100, 50}, {107, 53}}, {{96, 48}, {111, 55}}});
-  // The data alone, for users that place it themselves.
+  // Only the data, for users that place it themselves.
   EXPECT_EQ(readImageFile(path).placement->x, 4);
   EXPECT_EQ(colorOfData(readImageFile(path), path).width, 8);
   writeParts(path, {colored("", color)}, {{{100, 0}, {107, 3}}, {{0, 0}, {15, 7}}});

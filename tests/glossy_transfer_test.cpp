@@ -91,7 +91,7 @@ TEST(GlossyTransfer, MetalsShowTheirMirrorDirection) {
       EXPECT_LT(constant, 1.02);
       const vec3 view = ViewGrid::direction(node);
       const vec3 mirror = frame.toWorld(vec3(-view.x, -view.y, view.z));
-      // The first band, as a vector, points where light comes from that the surface reflects.
+      // The first band, as a vector, points towards the light that the surface reflects.
       const vec3 from = glm::normalize(vec3(row[3].x, row[1].x, row[2].x));
       same += double(glm::dot(from, mirror));
       opposite += double(glm::dot(from, frame.toWorld(view)));

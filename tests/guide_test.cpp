@@ -167,7 +167,7 @@ TEST(SlowGuide, AgreesWithTheUnguidedRenderInEveryPixel) {
   EXPECT_GT(welchTest(Moments::of(means[0]), Moments::of(means[1])), 1e-3);
 }
 
-// Light from the walls of a box around the room, which has other directions for each point.
+// Light from the walls of a box around the room, whose directions differ from point to point.
 TEST(SlowGuide, AgreesInSurroundings) {
   constexpr int kSeeds = 16, kSize = 32, kTiles = 16;
   const Scene scene = room();

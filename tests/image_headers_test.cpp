@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the headers of .hdr, PNG, JPEG and TIFF files say of light, colour and orientation.
+// Statements about light, colour and orientation in the headers of .hdr, PNG, JPEG and TIFF files.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -54,7 +54,7 @@ TEST(ImageHeaders, RadianceLinesAreAppliedOrNamed) {
   check("EXPOSURE=1.0\n", plain, nullptr);
   check("COLORCORR=1 .5 .25\n", Rgb(1), "COLORCORR=1 0.5 0.25");
   check("COLORCORR=2 2 2\nCOLORCORR= .5 .5 .5\n", plain, nullptr);
-  // What real files have: Photoshop's lines, a doubled first line.
+  // Lines of real files: Photoshop's, and a doubled first line.
   check("PRIMARIES=0 0 0 0 0 0 0 0\nGAMMA=1\n#?RADIANCE\n# comment = 1\n", plain, nullptr);
   check("PRIMARIES=0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329\n", plain, nullptr);
   check("GAMMA=2.2\n", plain, "GAMMA");
@@ -156,7 +156,7 @@ TEST(ImageHeaders, GammaAndPrimariesOfAPng) {
   EXPECT_GT(converted.x, srgb.x * 1.05f);
   EXPECT_LT(converted.y, srgb.y);
   expectNear(read(p3, IntegerTexels::Linear), fraction);  // raw levels are not light
-  // That of a file of light: GIMP and others write the one of sRGB.
+  // The profile of a file of light: GIMP and others write sRGB's.
   expectNear(read(chunk("cHRM", {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})), srgb);
 }
 
@@ -211,8 +211,8 @@ TEST(ImageHeaders, CodePointsOfAPng) {
   }
 }
 
-// Photographs of 1 texel and two exposures, merged: the channels' encoding and primaries are those
-// that the file states, and what is not decoded elsewhere is refused.
+// Photographs of 1 texel and two exposures, merged: the channels have the encoding and primaries
+// that the file states, and encodings that are not decoded elsewhere are refused.
 TEST(ImageHeaders, PhotographsAreOfWhatTheirPngStates) {
   const TemporaryFolder folder;
   const std::array<uint8_t, 3> texel = {200, 100, 50};
@@ -286,7 +286,7 @@ TEST(ImageHeaders, AllReadersTurnAlike) {
                 oriented(stored, orientation).texels)
           << name << orientation;
     }
-    // Some PNG files have the block with its name.
+    // Some PNG files have the block with its JPEG name.
     const std::string named = std::string("Exif\0\0", 6) + orientationBlock(orientation);
     EXPECT_EQ(readImage(saved(folder / "b.png", withExif(seed("a.png"), named))).texels,
               oriented(readImage(saved(folder / "b.png", seed("a.png"))), orientation).texels);

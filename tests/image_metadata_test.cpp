@@ -215,12 +215,12 @@ TEST(ImageMetadata, ProfilesThatAreNotAppliedAreNamed) {
   EXPECT_FALSE(isSaid("a.jpg", seed("a.jpg")));
   EXPECT_FALSE(isSaid("a.png", kPng));
   EXPECT_FALSE(isSaid("a.tif", seed("a.tif")));
-  // Chunks that say what the profile does are used.
+  // Chunks that state the same as the profile are used.
   const Bytes linear = chunk("gAMA", {0, 1, 0x86, 0xa0});
   EXPECT_FALSE(isSaid("a.png", inserted(kPng, 8 + 25, joined({chunk("iCCP", wide), linear}))));
 }
 
-// Cameras that are set to Adobe RGB tell so by EXIF's ColorSpace, often alone.
+// Cameras that are set to Adobe RGB state that in EXIF's ColorSpace, often only there.
 TEST(ImageMetadata, ColoursOfExifThatAreNotAppliedAreNamed) {
   constexpr uint16_t kColorSpace = 0xa001;
   const TemporaryFolder folder;

@@ -115,7 +115,7 @@ Bytes makeJpeg(const JpegKind& kind, int width, int height) {
   return file;
 }
 
-// What is read: fractions, with associated alpha; empty: refused.
+// The image read: fractions, with associated alpha; empty: refused.
 std::vector<float> byModule(const char* format, const Bytes& file) try {
   const auto image = openModuleImage(format, file, "a file");
   const ModuleImageHeader& header = image->header();
@@ -210,7 +210,7 @@ TEST(ImageReaders, JpegOfEveryKind) {
     expectSameTexels("jpeg", makeJpeg(kind, 37, 29), inWords(kind));
 }
 
-// Half a picture is none, of whatever kind, also as a texture.
+// Half a picture of any kind is refused, also as a texture.
 TEST(ImageReaders, TruncatedJpegIsRefused) {
   const TemporaryFolder folder;
   constexpr size_t kEndMarker = 2;

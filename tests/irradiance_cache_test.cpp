@@ -18,7 +18,7 @@ namespace {
 
 const std::atomic<bool> kNever = false;
 
-// A scene with what is needed to trace it.
+// A scene with everything that is needed to trace it.
 struct Traced {
   Scene scene;
   World world;
@@ -126,7 +126,7 @@ TEST(IrradianceCache, AnOpenFloorIsOneRecord) {
   EXPECT_TRUE(std::isinf(cache.records()[0].radius));
 }
 
-// The wall of corner() is one that a single far record would miss.
+// A single far record would miss the wall of corner().
 TEST(IrradianceCache, FindsAWallBehindARecordThatSeesNothing) {
   Scene scene = corner();
   addQuad(scene, 0, {-400, 0, 4}, {390, 0, 0}, {0, 0, -8});
@@ -300,8 +300,8 @@ TEST(SlowIrradianceCache, CountsLightBehindGlassOnce) {
   EXPECT_NEAR(changeByCache(straight, sky, smallRender(24, 24, 256, 4)), 0, 0.03);
 }
 
-// Two tinted sheets at one distance under a white ceiling, and a lamp flush with a sheet: what lies
-// behind the first of the surfaces.
+// Two tinted sheets at one distance under a white ceiling, and a lamp flush with a sheet: the light
+// from behind the first of the surfaces.
 TEST(SlowIrradianceCache, MeetsAllSurfacesOfAPlace) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
@@ -362,7 +362,7 @@ TEST(SlowIrradianceCache, SeesThroughHiddenBacks) {
   EXPECT_NEAR(changeByCache(scene, sky, smallRender(48, 48, 128, 4)), 0, 0.02);
 }
 
-// What rough glass and mirrors throw onto the floor is in the records alone.
+// Only the records have the light that rough glass and mirrors throw onto the floor.
 TEST(SlowIrradianceCache, LosesNoLightBehindRoughGlass) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});

@@ -84,7 +84,7 @@ TEST(CosinePattern, ClosedFormsAgreeWithASumOverNormals) {
   }
 }
 
-// But for the extent of a texel or block, which a point has not.
+// They agree apart from the extent of a texel or block, which a point does not have.
 TEST(RadiancePoints, HaveTheProductsOfTheProbe) {
   const Image probe = studioProbe({128, 64});
   const std::vector<vec3> normals = texelDirections(kNormals);

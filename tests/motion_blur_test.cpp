@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motion blur: what an image with an open shutter shows is the mean over the shutter's time.
+// Motion blur: an image with an open shutter is the mean over the shutter's time.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ const json kShining = {{"emissiveFactor", {1, 1, 1}},
                        {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 0, 1}}}},
                        {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
 
-// What moves the square, or the view of it, by one metre along +X in one second.
+// The ways to move the square, or the view of it, by one metre along +X in one second.
 enum class Mover { Node, SharedNode, Morph, Skin, Camera };
 
 // A square of side 1 m with the radiance 1, from (-1, -0.5) to (0, 0.5) at time 0, before black; an

@@ -159,7 +159,8 @@ TEST_F(SlowOutputFiles, OtherCommandsDoNotOverwriteTheirInputs) {
                             kInput);
 }
 
-// The file at the end of the links is replaced, and they stay; what is no file is refused first.
+// The file at the end of the links is replaced, and they stay; anything that is no file is refused
+// first.
 TEST_F(SlowOutputFiles, LinksAreFollowedAndSpecialFilesRefused) {
   const auto render = [&](const std::string& output) {
     return Words{"render", in("scene.toml"), "--samples", "1", "--quiet", "-o", output};

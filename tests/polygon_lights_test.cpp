@@ -116,8 +116,8 @@ Image unevenRoom(float atBottom) {
   return map;
 }
 
-// What surfaces get that see all of what was taken is kept by a directional light, not by constant
-// radiance.
+// A directional light, but not constant radiance, keeps the irradiance of surfaces that see all of
+// the light taken.
 TEST(PolygonSource, UnevenLightHasItsOwnDirection) {
   const Image map = unevenRoom(30);
   const PolygonExtraction extraction = extractPolygons(map, {window()});

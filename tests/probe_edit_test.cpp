@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits of a probe; what clipping costs, and whether a probe has been clipped.
+// Edits of a probe; the light lost by clipping, and whether a probe has been clipped.
 #include "base/json.h"
 #include "json_file.h"
 #include "probe/edit.h"

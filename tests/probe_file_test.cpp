@@ -41,7 +41,7 @@ TEST(ProbeFile, GivenMappingOverridesDetection) {
   EXPECT_THROW(loadProbe(folder / "p.exr", "sphere"), InputError);
 }
 
-// A mirror ball and an angular map look alike: a file of this program tells what it is.
+// A mirror ball and an angular map look alike: a file of this program states which it is.
 TEST(ProbeFile, ConvertedProbesNameTheirMapping) {
   const TemporaryFolder folder;
   const Image sky = gradientProbe({64, 32}, Rgb(1, 2, 3), {0.2, 0.3, 0.4});
@@ -65,7 +65,7 @@ TEST(ProbeFile, ConvertedProbesNameTheirMapping) {
   }
 }
 
-// What has no place for the mapping is read with the one that shape and corners suggest.
+// A file without a place for the mapping is read with the one that shape and corners suggest.
 TEST(ProbeFile, ConvertWarnsOfALostMapping) {
   const TemporaryFolder folder;
   writeImage(folder / "sky.exr", gradientProbe({64, 32}, Rgb(0.1f, 0.2f, 0.3f), {0.2, 0.3, 0.4}));

@@ -93,7 +93,7 @@ TEST(Reflectance, OfAFlatGroundRenderedAndExact) {
   expectNear(meanOf(exact.colors(), true), meanOf(rendered.colors(), true), 0.006f);
 }
 
-// What is unlit shows its base colour, and what emits reflects the rest of the plate.
+// An unlit surface shows its base colour, and an emitting one reflects the rest of the plate.
 TEST(Reflectance, OfUnlitAndEmittingGround) {
   const Rgb plate(0.3f, 0.2f, 0.15f), emission(0.1f, 0.05f, 0.02f);
   for (const bool unlit : {true, false}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mirror balls that the path tracer renders: what it photographs must return the probe that lit it,
-// and the reflectivity of the ball.
+// Mirror balls that the path tracer renders: its photographs must return the probe that lit the
+// ball, and the ball's reflectivity.
 #include <gtest/gtest.h>
 
 #include "capture_photographs.h"
@@ -63,7 +63,7 @@ TEST(SlowRenderedBall, ReturnsTheProbe) {
 }
 
 // HDRI book, figure 9.10: a card beside a ball, seen directly and in the ball. Both are lit by a
-// constant probe; the card is Lambertian and emits, so that it differs from what is around it.
+// constant probe; the card is Lambertian and emits, so that it differs from its surroundings.
 TEST(SlowRenderedBall, ReturnsItsReflectivity) {
   for (const Rgb& color : {kChrome, Rgb(0.59f)}) {
     Scene scene;

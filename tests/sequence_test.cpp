@@ -176,7 +176,7 @@ TEST(Sequence, OneOfTheFrames) {
   EXPECT_EQ(texelsOf(out / "one.5.exr"), texelsOf(out / "all.5.exr"));
 }
 
-// An image that exists is a finished one; a checkpoint keeps what there is of the next.
+// An image that exists is a finished one; a checkpoint keeps the samples of the next.
 TEST(SlowSequence, SurvivesInterruption) {
   const Moving model;
   const TemporaryFolder out;
@@ -370,7 +370,7 @@ TEST(Sequence, NamesFiles) {
   EXPECT_EQ(withNumber("a.exr", 3), "a.exr");
 }
 
-// The light of models that move is another one in each frame.
+// The light of moving models differs in each frame.
 TEST(Sequence, EachFrameMayHaveItsCache) {
   const Moving model;
   const TemporaryFolder out;

@@ -89,8 +89,8 @@ TEST(ShadowCatcher, AShadowMayBeColoured) {
     EXPECT_NEAR(color.at(5, 4)[c], albedo[c] / kPiD * (1.8 - darkest * lit[c]), 1e-3);
 }
 
-// Laid over the floor without the object, the image is the floor with it; also what the object
-// reflects onto the floor, and where it covers part of a pixel.
+// Laid over the floor without the object, the image is the floor with it; also the light that the
+// object reflects onto the floor, and where it covers part of a pixel.
 TEST(ShadowCatcher, OverTheLocalSceneItIsTheWholeScene) {
   const FloorAndObject scene({0.1, 0.3, 0.9, 1});
   writeImage(scene / "p.exr", gradientProbe({64, 32}, Rgb(0.4f, 0.5f, 0.7f), {0.2, 0.3, 0.9}));

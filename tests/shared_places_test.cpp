@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Emitting surfaces that lie where others lie: a lamp gives what is seen of it, however paths find
-// it.
+// Emitting surfaces that coincide with others: a lamp gives only its visible light, however paths
+// find it.
 #include <gtest/gtest.h>
 
 #include "probe/synth.h"
@@ -40,7 +40,7 @@ float render(const Scene& scene, const Camera& camera, Mis mis) {
   return meanColor(renderScene(scene, camera, black, "importance", settings).film.mean()).x;
 }
 
-// Seen straight from below, at its middle.
+// A view straight from below, at the square's middle.
 float seen(const Scene& scene) {
   return render(scene, Camera::lookAt({0, 0.1f, 0}, {0, 1, 0}, {0, 0, 1}, 0.1f), Mis::Balance);
 }
@@ -147,7 +147,7 @@ TEST(SharedPlaces, ALampInACoordinatePlaneIsFlushWithARoundedWall) {
     EXPECT_NEAR(render(scene, above, mis), kFormFactor, 0.012f) << int(mis);
 }
 
-// Triangles of a lamp that touch at edges, walls that cross it, and what is before or behind it do
+// Triangles of a lamp that touch at edges, walls that cross it, and surfaces before or behind it do
 // not share its place, at any scale.
 TEST(SharedPlaces, NeighboursDoNotShareAPlace) {
   for (const float scale : {1e-3f, 1.0f, 1e5f}) {

@@ -148,7 +148,7 @@ TEST(SolveLines, RefusesWhatLeavesTheCameraOpen) {
                                {.height = 1, .origin = {}}, "L.csv"));
 }
 
-// What fSpy exports for a camera: rows of its transform, and so on.
+// fSpy's export for a camera: rows of its transform, and so on.
 std::string fspyJson(const SolvedCamera& c, const std::string& width = "1600") {
   const auto row = [&](int i) {
     return fmt::format("[{},{},{},{}]", c.axes[0][i], c.axes[1][i], c.axes[2][i], c.position[i]);

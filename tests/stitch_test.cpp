@@ -77,7 +77,7 @@ TEST(SlowStitch, TilesOfAPlaceGiveItBack) {
   const std::vector<Tile> tiles = photographs(Probe(map), 300);
   const StitchedProbe stitched = stitch(tiles, std::vector<double>(tiles.size(), 1.0), {512, 256});
   EXPECT_LT(stitched.uncovered, 1e-9);
-  // What the photographs show: the interpolation of the map's texels.
+  // The content of the photographs: the interpolation of the map's texels.
   const Probe place(map);
   Image fine(2048, 1024, 3);
   for (int y = 0; y < fine.height; ++y)

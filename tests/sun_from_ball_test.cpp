@@ -26,7 +26,7 @@ DiffuseBall ballOf(double radius, double azimuth, double elevation) {
           .camera = {azimuth, elevation}};
 }
 
-// What the camera sees of the ball in the light of a probe.
+// The camera's picture of the ball in the light of a probe.
 Image photographOf(const DiffuseBall& ball, const Image& probe) {
   const int side = int(2 * ball.circle.radius) + 10;
   Image photograph(side, side, 3);

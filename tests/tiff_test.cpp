@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which image of a TIFF is read, how it is turned, and which files are refused.
+// The image of a TIFF that is read, its orientation, and the files that are refused.
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -157,8 +157,8 @@ TEST_F(Tiff, TruncatedFilesAreRefused) {
   }
 }
 
-// What OpenImageIO returns black or as far as it goes: strips of compressions that libtiff was
-// built without (JPEG 2000, JPEG XL), and damaged ones.
+// Files that OpenImageIO returns black or in part: strips of compressions that libtiff was built
+// without (JPEG 2000, JPEG XL), and damaged ones.
 TEST_F(Tiff, TexelsThatCannotBeDecodedAreRefused) {
   constexpr uint16_t kLzw = 5, kAdobeDeflate = 8, kDeflate = 32946, kJpeg2000 = 34712,
                      kJpegXl = 50002;
@@ -184,7 +184,7 @@ std::string deflatedOf(const std::string& bytes) {
   return file;
 }
 
-// zlib's bound on what it makes of a strip is none on what others may.
+// zlib's bound on its own output for a strip does not bound other writers' output.
 TEST_F(Tiff, DeflateMayBeLongerThanItsTexels) {
   TiffImage deflated = rgb();
   deflated.compression = 8;
@@ -210,7 +210,7 @@ TEST_F(Tiff, DamagedDeflateIsRefused) {
       refuse({deflated(damaged, compression)}, "block 1 of its texels is damaged");
       refuse({thumbnail(), deflated(damaged, compression)}, "block 1 of its texels is damaged");
     }
-    // Flushed and never ended: without a checksum, not damaged.
+    // A stream that was flushed and never ended has no checksum, but is not damaged.
     std::string flushed = whole.substr(0, whole.size() - kChecksum);
     flushed[flushed.size() - kStored] = 0;  // not the last block
     for (const std::string& texels : {whole + "more", flushed})
