@@ -156,7 +156,7 @@ TEST(ImageHeaders, GammaAndPrimariesOfAPng) {
   EXPECT_GT(converted.x, srgb.x * 1.05f);
   EXPECT_LT(converted.y, srgb.y);
   expectNear(read(p3, IntegerTexels::Linear), fraction);  // raw levels are not light
-  // The profile of a file of light: GIMP and others write sRGB's.
+  // The cHRM of a file of light: GIMP and others write sRGB's.
   expectNear(read(chunk("cHRM", {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})), srgb);
 }
 

@@ -43,7 +43,7 @@ SkyRay uniformSkyRay(const World& world, const Surface& surface, const vec3& nor
 // book, section 9.8.2) and irradiance (figure 9.38c).
 
 // Another integrator, which also fills these layers of FirstHit, one ray or path each a sample.
-// They change neither the picture, nor its estimate of the light beyond the limits of depth, nor
+// The layers change neither the picture, nor its estimate of the light beyond depth limits, nor
 // what guides learn.
 //   ambientOcclusion  an estimate of 1 / pi integral of V cos, V the visibility of the sky
 //   unoccluded        of the vector integral of V cos (or of V) times the direction

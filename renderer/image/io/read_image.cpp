@@ -141,8 +141,7 @@ void warnOfColors(std::span<const uint8_t> profile, std::span<const uint8_t> fil
                                     path.string())});
 }
 
-// The colour profile of an image of light, unless other chunks of a PNG say the same as the
-// profile.
+// The colour profile of an image of light; empty if other chunks of a PNG state what it would.
 std::span<const uint8_t> unreadProfile(ImageFormat format, std::span<const uint8_t> bytes) {
   if (format == ImageFormat::Jpeg) return jpegProfile(bytes);
   for (const char* chunk : {"cICP", "sRGB", "cHRM", "gAMA"})
