@@ -170,7 +170,7 @@ Aimed aimAtEdges(const Scene& scene, float radius, int rayCount) {
   return aimed;
 }
 
-// Two entries of a scene may share a mesh, as those of one file with two variants do.
+// Two entries of a scene may share a mesh, as two entries of one file with two variants do.
 TEST(Accel, EntriesOfOneMeshHaveTheirOwnFilters) {
   Scene scene;
   scene.nodeNames = {"node"};
@@ -258,7 +258,7 @@ TEST(Accel, InstancesMatchBakedMeshes) {
   constexpr int kRays = 20000;
   int hits = 0, differing = 0, fronts = 0, mapped = 0;
   for (int i = 0; i < kRays; ++i) {
-    // From outside the scene towards a sphere, or from inside a sphere in any direction.
+    // A ray from outside the scene towards a sphere, or from inside a sphere in any direction.
     const vec3 centre(transforms[i % 3][3]);
     const vec3 jitter = vec3(random.next(), random.next(), random.next()) - 0.5f;
     const vec3 origin = i % 2 ? centre + 0.5f * jitter : 10.0f * jitter;
@@ -387,7 +387,7 @@ TEST(Accel, EmptyScenesAndInvalidRaysHaveNoHit) {
   }
 }
 
-// Also for numbers of rays that are no multiple of a packet.
+// Holds also for numbers of rays that are no multiple of a packet.
 TEST(Accel, PacketsMatchSingleRays) {
   constexpr size_t kMost = 20;
   const Scene spheres = sphereScene(1, vec3(0));

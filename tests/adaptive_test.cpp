@@ -133,7 +133,7 @@ TEST(SlowAdaptive, RareLightIsUnbiased) {
   EXPECT_LT(std::fabs(moments.mean - 1), 4 * error);
 }
 
-// Every pixel's mean over seeds agrees with that of the plain render.
+// Every pixel's mean over seeds agrees with the plain render's.
 TEST(SlowAdaptive, AgreesWithThePlainRenderInEveryPixel) {
   constexpr int kSeeds = 24, kSize = 24;
   const Camera camera = Camera::lookAt({0.5f, 2.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.7f);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rotation between two probes of one place: known ones are found, and doubtful ones said to be.
+// The rotation between two probes of one place: known ones are found, and doubtful ones reported as
+// such.
 #include "probe/capture/align.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ dvec3 lobes(const dvec3& d) {
   return sum;
 }
 
-// The place as a probe of another orientation sees it: in the world it is `toWorld` of the map.
+// The place as seen by a probe with another orientation: `toWorld` maps it to the world.
 Image seenTurned(const Rotation& toWorld, int height) {
   return rasterize(Mapping::LatLong, {2 * height, height}, 2,
                    [&](const dvec3& d) { return lobes(toWorld(d)); });
@@ -88,7 +89,8 @@ TEST(SlowAlign, NoiseGivesTheErrorThatIsStated) {
     for (int axis = 0; axis < 3; ++axis)
       chiSquare += std::pow(turn[axis] / found.standardErrors[axis], 2);
   }
-  // Of 36 degrees of freedom: 99.9% are between 14 and 72, and the standard errors err by 10%.
+  // With 36 degrees of freedom, 99.9% of values are between 14 and 72, and the standard errors err
+  // by 10%.
   EXPECT_GT(chiSquare, 14 / 1.2);
   EXPECT_LT(chiSquare, 72 * 1.2);
 }

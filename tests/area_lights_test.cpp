@@ -165,7 +165,7 @@ TEST(AreaLights, GiveTheIrradianceOfThePiecewiseConstantMap) {
     const Image map = piecewiseConstant(*lighting, sky.width, sky.height);
     const dvec3 before = meanRadiance(sky), after = meanRadiance(map);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(after[k] / before[k], 1, 1e-5);
-    // Finer, so that the horizon cuts small texels.
+    // The map is finer, so that the horizon cuts small texels.
     Image fine(sky.width * 16, sky.height * 16, 3);
     for (int y = 0; y < fine.height; ++y)
       for (int x = 0; x < fine.width; ++x) fine.setRgb(x, y, map.rgb(x / 16, y / 16));

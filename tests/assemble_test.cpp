@@ -45,7 +45,7 @@ std::vector<std::pair<std::string, Image>> probes() {
 
 const Image kNoMask;
 
-// From photographs at these azimuths.
+// A loop of photographs from these azimuths.
 struct Loop {
   std::vector<Image> photographs;
   std::vector<CaptureView> views;
@@ -79,15 +79,15 @@ TEST(SlowAssemble, TwoViewsReturnTheProbe) {
     }
 }
 
-// In the blind cone, and around it, which few pixels of the rim show.
+// The error is in the blind cone, and around it, where few pixels of the rim show the probe.
 TEST(SlowAssemble, OneViewIsWrongBehindTheBall) {
   const Image map = normalised(studioProbe({512, 256}));
   const Probe probe(map);
   Loop one(probe, 32, BallReflectance(kChrome), {{180, 0}});
   Loop two(probe, 32, BallReflectance(kChrome), {{180, 0}, {90, 0}});
   Assembly alone = assemble(one.views, kSize), both = assemble(two.views, kSize);
-  // Of a cap of radius asin(1 / 32), whose rim crosses texels of pi / height radians: to a quarter
-  // of one all around.
+  // The share of a cap of radius asin(1 / 32), whose rim crosses texels of pi / height radians: to
+  // within a quarter of a texel all around.
   const double rim = std::asin(1 / 32.), quarter = kPiD / kSize.height / 4;
   EXPECT_NEAR(alone.blindShare, 0.5 * (1 - std::cos(rim)), 0.5 * std::sin(rim) * quarter);
   EXPECT_EQ(both.blindShare, 0);
@@ -108,7 +108,7 @@ TEST(SlowAssemble, OneViewIsWrongBehindTheBall) {
   EXPECT_LT(errorBehind(both), 0.3 * errorBehind(alone));
 }
 
-// Views of a sharp room that is turned and exposed otherwise than given.
+// Views of a sharp room, with turns and exposures that differ from the given ones.
 TEST(SlowAssemble, ViewsAreTurnedAndExposedToMatch) {
   const Image map = normalised(studioProbe({512, 256}));
   const Probe probe(map);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are complete or not there, and what killed processes leave.
+// Files that are complete or absent, and leftovers of killed processes.
 #include "base/file.h"
 
 #include <gtest/gtest.h>

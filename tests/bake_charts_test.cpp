@@ -63,7 +63,7 @@ TEST(BakeCharts, PlacesOfTheAtlasDoNotOverlapAndHavePadding) {
     }
     for (const BakePoint& p : texelPoints(meshes, charts, atlas)) {
       EXPECT_EQ(owner[p.y * 256 + p.x], p.chart);
-      // The padding is free; with the reach of half a diagonal beyond a chart's edge.
+      // The padding stays free; points reach half a diagonal beyond a chart's edge.
       const AtlasPlace& place = atlas.places[size_t(p.chart)];
       EXPECT_GE(int(p.x), place.x + std::max(padding - 1, 0));
       EXPECT_LT(int(p.x), place.x + place.width - std::max(padding - 1, 0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which tables a scene's materials need, and consistency of their values.
+// The tables that a scene's materials need, and the consistency of their values.
 #include <gtest/gtest.h>
 
 #include "all_tables.h"

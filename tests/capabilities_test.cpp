@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of what cannot be combined.
+// The table of features that cannot be combined.
 #include "description/capabilities.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ D plain() {
   return d;
 }
 
-// What brings a feature into a description, by its name.
+// Changes that bring a feature into a description, by its name.
 const std::map<std::string_view, std::function<void(D&)>> kBring = {
     {"a composite", [](D& d) { composite(d, CompositeMode::Ratio); }},
     {"a composite with a plate", [](D& d) { composite(d, CompositeMode::Difference); }},
@@ -111,7 +111,8 @@ TEST(Capabilities, APlainDescriptionHasNoConflict) {
   EXPECT_NO_THROW(checkCapabilities(d));
 }
 
-// Every row is refused when both features are there, and neither alone (but for what is missing).
+// Every row is refused when both features are there, but not with one alone (except for missing
+// features).
 TEST(Capabilities, EveryConflictIsFound) {
   std::set<std::string_view> used;
   for (const Conflict& c : conflicts()) {
@@ -139,7 +140,7 @@ TEST(Capabilities, EveryConflictIsFound) {
   EXPECT_EQ(used.size(), kBring.size()) << "a feature is in no row";
 }
 
-// Every row is told where its setting was given without what it needs, and only there.
+// Every row is reported if its setting was given without what it needs, and only then.
 TEST(Capabilities, EverySettingInVainIsNamed) {
   D open = plain();
   open.camera.shutter.emplace();

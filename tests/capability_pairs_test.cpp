@@ -22,14 +22,14 @@ namespace {
 
 using D = RenderDescription;
 
-// How a description is rendered: at once, or in parts that are put together.
+// The way in which a description is rendered: at once, or in parts that are put together.
 struct Render {
   D description;
   uint32_t shards = 1;
   bool crops = false, interrupts = false, inSession = false, mixesLight = false;
 };
 
-// What leaves the expected picture as it is, or with a bias of at most `bias` in its mean.
+// A change that leaves the expected picture as it is, or with a bias of at most `bias` in its mean.
 struct Way {
   const char* name;
   std::function<void(Render&)> bring;
@@ -96,9 +96,8 @@ std::vector<Way> ways(const Image& plate) {
   };
 }
 
-// A floor and an emitting panel (the local scene); a rough ball and one that half of
-// the light passes. Its
-// shapes have smooth edges alone, so that tiles have nearly normal means.
+// A floor and an emitting panel (the local scene); a rough ball and one that passes half of the
+// light. Its shapes have only smooth edges, so that tiles have nearly normal means.
 std::shared_ptr<const Scene> scene(bool hasObjects) {
   const auto made = std::make_shared<Scene>();
   SceneBuilder builder(*made);
@@ -160,7 +159,7 @@ const std::atomic<bool> kGoesOn = false;
 
 void nothing(double) {}
 
-// The samples of all parts, finished as those of the whole.
+// The samples of all parts, finished like the whole's.
 Image ofParts(const D& whole, const std::vector<D>& parts) {
   const LoadedScene loaded = loadScene(whole);
   std::optional<RenderResult> sum;
@@ -254,7 +253,7 @@ std::vector<double> means(const std::vector<Image>& images) {
 
 double meanOfAll(const std::vector<Image>& images) { return meanOf(means(images)).mean; }
 
-// What is refused of a render: the whole, or its parts.
+// The description of a render, as a whole or in parts, if it is refused.
 std::optional<D> refused(const Render& r) {
   D d = r.description;
   if (r.shards > 1) d.settings = shardOf(d.settings, 0, r.shards);
@@ -263,8 +262,8 @@ std::optional<D> refused(const Render& r) {
   return conflictIn(d) ? std::optional(d) : std::nullopt;
 }
 
-// Of four repeats, the variance is too uncertain for a test so far in the tail: who fails is asked
-// again, with more.
+// With four repeats the variance is too uncertain for a test so far in the tail: a pair that fails
+// is tested again, with more.
 bool agree(const std::vector<Image>& found, const std::vector<Image>& expected) {
   constexpr int kTests = 500;             // at most
   constexpr double kSignificance = 0.01;  // of all tests together

@@ -9,7 +9,7 @@
 namespace chromeball::capture_optics_test {
 namespace {
 
-// By the vector form of reflection, for a camera at azimuth 0, whose frame is that of the world.
+// The reflected direction in vector form, for a camera at azimuth 0, whose frame is the world's.
 dvec3 reflectedDirection(double distance, const dvec2& p) {
   const CameraAxes axes({0, 0});
   dvec3 origin(p, 2), ray(0, 0, -1);

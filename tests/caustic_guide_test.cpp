@@ -40,7 +40,7 @@ std::vector<Photon> fromImages(const std::vector<vec3>& images, size_t count, fl
 
 TEST(CausticLobes, SampleTheirDensity) {
   std::vector<Photon> photons = fromImages({{1, 1, 0}, {-2, 0.5f, 1}, {0, 3, 0.3f}}, 300, 0.4f);
-  // Blurred, so that the test can integrate the density.
+  // The photons are blurred, so that the test can integrate the density.
   for (size_t i = 0; i < photons.size(); ++i) {
     const vec3 offset(random1(int(i), 2), random1(int(i), 3), random1(int(i), 4));
     photons[i].direction = glm::normalize(photons[i].direction + 0.5f * offset);
@@ -398,7 +398,7 @@ TEST(CausticGuide, ServesLightGroupsAndPolygons) {
   EXPECT_GT(fractionUnder(*DividedProbe().lighting, false), 0);
 }
 
-// All light, of all parts.
+// All light of all parts.
 TEST(Photons, StartFromPolygonsToo) {
   const DividedProbe probe;
   double sum = 0;

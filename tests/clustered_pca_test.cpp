@@ -47,7 +47,7 @@ TEST(ClusteredPca, FullRankIsExact) {
   }
 }
 
-// One cluster is the Eckart-Young theorem: the other singular values are left.
+// One cluster is the Eckart-Young theorem: the other singular values remain as error.
 TEST(ClusteredPca, OneClusterLeavesTheSmallSingularValues) {
   Signals signals{6, std::vector<float>(6 * 12)};  // +-v_i e_i: mean 0
   double all = 0;

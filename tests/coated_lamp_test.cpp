@@ -16,7 +16,7 @@ Material lamp(float clearcoat) {
   return m;
 }
 
-// With Schlick's Fresnel term for ior 1.5.
+// The transmittance with Schlick's Fresnel term for ior 1.5.
 double coatTransmittance(double clearcoat, double cosine) {
   return 1 - clearcoat * (0.04 + 0.96 * std::pow(1 - cosine, 5));
 }

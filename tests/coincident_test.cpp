@@ -206,7 +206,7 @@ TEST(Coincident, TouchingGlassAndWaterRefractAsOneBoundary) {
     if (!waterFirst) addSlab(scene, bodyOf(1.33f, Rgb(0)), 0, 1);
     expectColor(meanInWhite(scene, above(), 64), Rgb(1), 0.01f, "white");
     Material black = lambert(Rgb(0));
-    addSquare(scene, black, -1, true);  // what is seen is reflected
+    addSquare(scene, black, -1, true);  // the camera sees a reflection
     // Incoherent layers (as of a pile of plates): r / (1 - r) adds.
     double ratio = 0;
     for (const double r : {reflectance(1, 1.5), reflectance(1.5, 1.33), reflectance(1.33, 1)})
@@ -251,7 +251,7 @@ TEST(Coincident, OverlappingBodiesWithFlushFacesAreAFurnace) {
     }
 }
 
-// Any number of surfaces, of which a bounded number is met.
+// Any number of surfaces; a path meets a bounded number of them.
 TEST(Coincident, ManySheetsAreAFurnace) {
   for (const int count : {2, 5, 8, 9, 40}) {
     Scene scene;
@@ -310,7 +310,7 @@ TEST(BlendedBody, LightSamplesAndBouncesAgree) {
   EXPECT_NEAR(meanInWhite(scene, under, 4096, "uniform").x, sampled, 0.01f * sampled);
 }
 
-// More of one instance at one place than a ray could visit.
+// More copies of one instance at one place than a ray could visit.
 TEST(Coincident, EqualInstancesCostNothing) {
   Scene scene;
   addSquare(scene, lambert(kRed), 0, true);

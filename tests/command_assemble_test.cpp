@@ -38,7 +38,7 @@ Image photograph(const Probe& probe, double azimuth) {
                       200, kCircle);
 }
 
-// Two photographs, of which the second is exposed twice as long.
+// Two photographs; the second is exposed twice as long.
 struct Photographs {
   TemporaryFolder folder;
   Image map = studio();
@@ -209,7 +209,7 @@ TEST(SlowCommandAssemble, WarnsOfAProbeThatIsUpsideDown) {
   EXPECT_EQ(error({sky}, "0"), "");
 }
 
-// What the output is, is written in its own mapping.
+// The output file names its mapping.
 TEST(SlowCommandAssemble, NamesTheMappingOfItsOutput) {
   const Photographs photographs;
   run({"probe", "assemble", photographs.a, "-o", photographs.out, "--circle", "102.2,98.6,80.3",
@@ -221,7 +221,7 @@ TEST(SlowCommandAssemble, NamesTheMappingOfItsOutput) {
             std::string::npos);
 }
 
-// What `probe convert` says of photographs, and how it flips them.
+// The messages of `probe convert` about photographs, and how it flips them.
 TEST(SlowCommandConvert, FlipsPhotographs) {
   const Photographs p;
   const Image ball = convert(p.map, Mapping::LatLong, Mapping::MirrorBall, {200, 200});
@@ -310,8 +310,8 @@ TEST(SlowCommandReflectivity, PrintsThatOfABall) {
   expectError({"probe", "reflectivity", photograph, "--direct", "2,2,5,5"}, "--reflected");
 }
 
-// The office's ball against the map that its photographer made of it: that has its camera, which we
-// put on +Z, in the centre, where ours has -Z.
+// The office's ball against the map that its photographer made from it: that map has its camera,
+// which we put on +Z, in the centre, where ours has -Z.
 TEST(SlowCommandAssemble, RealBallAgreesWithItsAuthorsMap) {
   const std::string at = "reference/differential_rendering/bbold72_cs445_samples/";
   const auto ball = sharedData(at + "calib_hdr.hdr"),
@@ -345,7 +345,7 @@ TEST(SlowCommandAssemble, RealBallAgreesWithItsAuthorsMap) {
   // The maps differ in interpolation, and at the rim, where theirs reads pixels beside the ball.
   EXPECT_LT(rms, 0.053);
   EXPECT_LT(median, 0.0067);
-  // Read as an ideal mirror ball, without a flip.
+  // The same photograph read as an ideal mirror ball, without a flip.
   const double unflipped =
       measured({"probe", "convert", ball->string(), folder / "ours.exr", "--from", "mirror-ball",
                 "--to", "lat-long", "--size", "720x360", "--rotation", "180"})

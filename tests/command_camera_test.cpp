@@ -19,7 +19,7 @@
 namespace chromeball::command_camera_test {
 namespace {
 
-// A model of one triangle, a grey photograph, and what its camera sees.
+// A model of one triangle, a grey photograph, and the points that its camera sees.
 class CommandCamera : public testing::Test {
  protected:
   CommandCamera() {

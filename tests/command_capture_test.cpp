@@ -92,7 +92,7 @@ TEST_F(SlowCommandCapture, MergesByExif) {
   EXPECT_NE(text.find("given 4, found "), std::string::npos) << text;
 }
 
-// Without EXIF, in any order, through a filter.
+// Merges without EXIF, in any order, through a filter.
 TEST_F(SlowCommandCapture, MergesByOptions) {
   const std::string longer = photograph("a.png", radiance_, 1. / 8, {}),
                     shorter = photograph("b.png", radiance_, 1. / 100, {});

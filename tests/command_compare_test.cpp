@@ -62,7 +62,7 @@ std::vector<std::string> with(std::vector<std::string> arguments,
   return arguments;
 }
 
-// What a comparison does not take from the scene file, and what it varies anyway.
+// Settings that a comparison does not take from the scene file, and settings that it varies anyway.
 TEST_F(SlowCommandCompare, NamesSettingsThatItDoesNotHeed) {
   std::ofstream(folder_ / "s.toml")
       << "model = 'plate.gltf'\n[probe]\nfile = 'probe.exr'\n[lighting]\nstrategy = 'uniform'\n"

@@ -89,7 +89,8 @@ TEST(CommandDevelop, AllAtOnceKeepsAlphaAndMetadata) {
   EXPECT_TRUE(file.metadata.contains("cameraFov"));
 }
 
-// The header tells what was done, also twice; other layers are not written, which is said.
+// The header lists the steps, also after two runs; a message says that other layers are not
+// written.
 TEST(CommandDevelop, TheHeaderHasWhatWasDone) {
   const TemporaryFolder folder;
   const std::string in = folder / "in.exr", once = folder / "1.exr", twice = folder / "2.exr";

@@ -35,7 +35,7 @@ void addQuad(GltfWriter& w, const std::string& name, vec3 corner, vec3 a, vec3 b
 
 constexpr int kWidth = 48, kHeight = 32;
 
-// A board that stands on the ground, seen from the side, and a plate of which half is sky.
+// A board that stands on the ground, seen from the side, and a plate that is half sky.
 class SlowCommandGround : public testing::Test {
  protected:
   SlowCommandGround() {
@@ -104,8 +104,8 @@ class SlowCommandGround : public testing::Test {
   std::string messages_;
 };
 
-// Both renders have the same random numbers, so that only rounding, by which a sample sees the sun
-// or not, and the floor's far edges differ.
+// Both renders have the same random numbers, so that only rounding, which decides whether a sample
+// sees the sun, and the floor's far edges differ.
 TEST_F(SlowCommandGround, HasTheShadowsOfAModelledPlane) {
   const Image automatic =
       *findLayer(render(scene("ground = true\nreflectance = \"model\"")), "difference");
@@ -139,7 +139,7 @@ TEST_F(SlowCommandGround, LooksAsInThePlate) {
 }
 
 // Through a lens with distortion, the plate's own pixels stay where nothing is added, and the
-// reflectance found is that of the pixels that show it.
+// reflectance found is right for the pixels that show it.
 TEST_F(SlowCommandGround, DistortedLensesKeepThePlate) {
   const std::string lens = "distortion = [-0.3, 0.1]\nprincipal_point = [0.45, 0.52]";
   const ImageFile bent = render(scene("ground = true", lens));

@@ -46,8 +46,8 @@ TEST(CommandImage, ErrorMetrics) {
   EXPECT_TRUE(same["psnr"].is_null());
 }
 
-// A file whose data window is not its display window is as one that has all of the latter: data in
-// its place, black elsewhere, the rest cropped.
+// A file whose data window is not its display window reads like one with the whole display window:
+// data in its place, black elsewhere, the rest cropped.
 TEST(CommandImage, FilesAreTheirDisplayWindows) {
   const TemporaryFolder folder;
   const std::string part = folder / "part.exr", whole = folder / "whole.exr", a = folder / "a.png",

@@ -98,7 +98,7 @@ TEST_F(CommandIntegrators, HeedTheAngleOfSuns) {
   EXPECT_NE(findColor(render(suns))->texels, findColor(render(wide))->texels);
 }
 
-// The records do not depend on the view, nor on where it is said: in the scene file as well.
+// The records depend neither on the view nor on where it is given: the scene file may give it too.
 TEST_F(CommandIntegrators, CacheIrradianceForOtherCamerasOfASceneFile) {
   const auto command = [&](const std::string& rest) {
     std::ofstream(folder_ / "scene.toml") << "model = 'plate.gltf'\n[probe]\nfile = 'probe.exr'\n"

@@ -85,7 +85,7 @@ TEST(CommandLights, RegionsAndLevels) {
   EXPECT_NE(table.find("median-cut-flat             8       8"), std::string::npos) << table;
 }
 
-// The numbers below the picture are those of lights-error.
+// The numbers below the picture equal those of lights-error.
 TEST(CommandLights, SpheresAndTheTableAgree) {
   const TemporaryFolder folder;
   const std::string probe = folder / "studio.exr", out = folder / "a.txt";
@@ -115,7 +115,7 @@ TEST(CommandLights, SpheresAndTheTableAgree) {
   EXPECT_NEAR(max / tableMax, 1, 1e-3);
 }
 
-// Options that have no effect are said.
+// Options that have no effect are reported.
 TEST(CommandLights, ASeedOfNoStochasticMethodIsSaid) {
   const TemporaryFolder folder;
   const std::string probe = folder / "studio.exr";
@@ -231,7 +231,7 @@ TEST(SlowCommandLights, ErrorPlotOfCountsInAnyOrder) {
   EXPECT_EQ(plotOf("median-cut", "2,8,32"), plotOf("median-cut,median-cut", "32,2,8,2,32"));
 }
 
-// What a file cannot hold is said: ambient light, angles, units, many lights.
+// A message names what a file cannot hold: ambient light, angles, units, many lights.
 TEST(SlowCommandLights, WarnsOfWhatAFileLoses) {
   const TemporaryFolder folder;
   const std::string probe = folder / "probe.exr";
@@ -262,7 +262,7 @@ TEST(SlowCommandLights, WarnsOfWhatAFileLoses) {
   EXPECT_TRUE(has(fileContents(folder / "a.h"), "and the ambient light in place"));
 }
 
-// Also of a mask that leaves no light; and no light that is written is black.
+// A mask that leaves no light is reported; no black light is written.
 TEST(SlowCommandLights, OfProbesWithLittleLight) {
   const TemporaryFolder folder;
   const std::string probe = folder / "probe.exr", out = folder / "a.json";
@@ -275,7 +275,7 @@ TEST(SlowCommandLights, OfProbesWithLittleLight) {
   EXPECT_EQ(jsonOfFile(out)["lights"].size(), 0u);
 }
 
-// The error of coarse probes is that of finer ones.
+// Coarse probes have the same error as finer ones.
 TEST(SlowCommandLights, ErrorOfAProbeOfOneTexel) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const ImageSize& size) {

@@ -56,7 +56,7 @@ class Parts {
   }
 };
 
-// The command, which runs while the test goes on.
+// The command, which runs while the test continues.
 class Child {
  public:
   explicit Child(const Words& words) {
@@ -70,7 +70,7 @@ class Child {
     execv(argv[0], argv.data());
     _exit(127);
   }
-  // Its exit status, once it has ended.
+  // The exit status, once the command has ended.
   std::optional<int> status() const {
     int status = 0;
     if (waitpid(id_, &status, WNOHANG) != id_) return {};
@@ -151,7 +151,7 @@ TEST(SlowMerge, OfCropsIsTheWholeImage) {
   expectError({"merge", left, wide, "-o", parts.out / "o.exr"}, "overlaps");
 }
 
-// Large parts are read in bands of rows, of which the last may be smaller.
+// Large parts are read in bands of rows; the last band may be smaller.
 TEST(SlowMerge, OfLargePartsIsTheWholeImage) {
   const Parts parts;
   const auto part = [&](const std::string& name, const Words& more) {
@@ -181,7 +181,7 @@ TEST(SlowMerge, OfLargePartsIsTheWholeImage) {
   EXPECT_LT(relMse(cd, whole), relMse(c, whole));
 }
 
-// The layers' names and the clamped light of the whole are told as for one render.
+// The layers' names and the clamped light of the whole are reported as for one render.
 TEST(SlowMerge, KeepsWhatIsKnownAboutTheParts) {
   const Parts parts;
   const auto render = [&](const std::string& name, const Words& more) {
@@ -310,7 +310,7 @@ TEST(SlowCheckpoint, OfAShardKeepsItsNumberOfSamples) {
   parts.render("o.exr", shardOf("32"));
 }
 
-// Killed 20 times at any moment, a render goes on from its last checkpoint and ends with the same
+// Killed 20 times at any moment, a render continues from its last checkpoint and ends with the same
 // bits; and so does the next one, if the machine is so fast that it ends before.
 TEST(SlowCheckpoint, SurvivesKills) {
   const Parts parts;
@@ -395,7 +395,7 @@ TEST(Parts, MayHaveNamesThatAreNotUtf8) {
   EXPECT_NE(merged.out.find("of 1 part,"), std::string::npos) << merged.out;
 }
 
-// A full disk while a checkpoint is written leaves the one before.
+// If the disk is full while a checkpoint is written, the previous one stays.
 TEST(SlowCheckpoint, StaysWhereTheDiskIsFull) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr";

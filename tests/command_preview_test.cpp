@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-// A pixel of the last image, and its picture, are those of the files.
+// A pixel of the last image, and its picture, equal the files'.
 void expectFilesView(const std::string& layer, const std::vector<std::string>& options,
                      const std::string& query) {
   SCOPED_TRACE(layer);

@@ -50,7 +50,7 @@ class CommandRelight : public testing::Test {
     expectError(all, reason);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "refused.exr"));
   }
-  // A stage's picture of one element as a photograph: of light with unit irradiance.
+  // A stage's picture of one element as a photograph under light of unit irradiance.
   void writePhotograph(const LightStage& stage, int element, double solidAngle,
                        const std::string& name) const {
     Image image(stage.width(), stage.height(), 3);

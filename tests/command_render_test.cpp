@@ -217,8 +217,8 @@ TEST(CommandRender, WritesEveryFormatLayerAndStatistic) {
   EXPECT_EQ(texel(exr, "alpha.A", 0, 0), 0);
 }
 
-// Also under a noise limit, where the remaining time is an extrapolation.
-// A scene file of others may name an output so that a terminal would obey it.
+// Checked also under a noise limit, where the remaining time is an extrapolation. A scene file from
+// others may give an output a name that a terminal would obey.
 TEST(CommandRender, NamesOfOutputsArePrintedPlainly) {
   const RenderScene scene;
   const std::string file = scene.folder() + "/scene.toml";
@@ -599,7 +599,7 @@ TEST(SlowCommandRender, TheHeaderReproducesTheImage) {
   }
 }
 
-// As they were given, also where a float does not hold them.
+// Numbers are stored as given, also where a float cannot hold them.
 TEST(CommandRender, NumbersOfTheHeaderAreExact) {
   const RenderScene scene;
   const std::map<std::string, double> given = {

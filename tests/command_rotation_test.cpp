@@ -46,7 +46,7 @@ class Turned : public testing::Test {
         << probeKeys;
     return path("scene.toml");
   }
-  // Only the background, if `depth` is 0.
+  // Shows only the background if `depth` is 0.
   Image render(const std::string& probeKeys, const Words& more = {}, int depth = 0) const {
     Words words{"render",      scene(probeKeys, depth > 0), "--size",  "16x12", "--samples",    "4",
                 "--max-depth", std::to_string(depth),       "--quiet", "-o",    path("out.exr")};
@@ -81,7 +81,7 @@ TEST_F(Turned, APitchAndRollOfZeroKeepTheBitsOfAYaw) {
   EXPECT_EQ(yaw.texels, render("rotation = [33.3, 0, 0]\n", {}, 2).texels);
 }
 
-// The camera looks along -Z: a pitch of 90 degrees lifts there what was below.
+// The camera looks along -Z: a pitch of 90 degrees lifts there the part of the map that was below.
 TEST_F(Turned, TheCameraSeesTheTurnedProbe) {
   const Probe level(map_);
   const Image image = render("rotation = [0, 90, 0]\n");
@@ -120,7 +120,7 @@ TEST_F(Turned, CommandsTurnDirections) {
   run({"lights", sky_, "--method", "suns", "--rotation", "20,70,-35", "-o", path("l.json")});
   const json light = jsonOfFile(path("l.json"))["lights"][0]["direction"];
   EXPECT_LT(glm::length(vec3(light[0], light[1], light[2]) - turned), 1e-5f);
-  // Resampled, and the irradiance of what was not.
+  // The irradiance of the resampled probe against the turned one's.
   run({"probe", "edit", probe_, path("e.exr"), "--rotation", "20,70,-35"});
   run({"probe", "convert", probe_, path("c.exr"), "--to", "lat-long", "--rotation", "20,70,-35"});
   EXPECT_EQ(readImage(path("e.exr")).texels, readImage(path("c.exr")).texels);

@@ -88,7 +88,7 @@ struct Receiver {
     }
   }
 
-  // Takes packets until the sender ends, or `most` of them.
+  // Receives packets until the sender ends, at most `most`.
   void run(const Socket& socket, int most = 1'000'000) {
     for (int i = 0; i < most; ++i) {
       uint32_t length = 0;
@@ -139,7 +139,7 @@ struct TevRender {
   }
 };
 
-// What the viewer has at the end is what the file has.
+// At the end the viewer has the same channels as the file.
 void expectSameAsFile(const Channels& shown, const std::string& path) {
   const ImageFile file = readImageFile(path);
   for (size_t c = 0; c < file.channels.size(); ++c) {

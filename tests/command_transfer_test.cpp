@@ -81,8 +81,8 @@ class CommandTransfer : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// Of an open triangle under a constant probe there is no noise: every path finds the same light,
-// and the other coefficients of the light are 0.
+// An open triangle under a constant probe has no noise: every path finds the same light, and the
+// other coefficients of the light are 0.
 TEST_F(CommandTransfer, ConstantLightOnAnOpenTriangle) {
   for (const auto& [name, count] : {std::pair("sh:2", 9u), std::pair("haar:2", 24u)}) {
     basis(name);
@@ -112,8 +112,8 @@ TEST_F(CommandTransfer, RotationTurnsTheLightAndKeepDropsCoefficients) {
   for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(doubled[i].y, 2 * all[i].y, 1e-5f * doubled[i].y);
 }
 
-// The file of transfer is the model: it still renders, and is lit as often as one likes with the
-// same bits.
+// The file of transfer is the model: it still renders, and lighting it repeatedly gives the same
+// bits.
 TEST_F(CommandTransfer, TheModelStaysAndTheSumIsRepeatable) {
   basis("sh:1");
   relight("probe.exr");
@@ -197,7 +197,7 @@ std::string writeBall(GltfWriter& w) {
 
 using SlowCommandTransfer = CommandTransfer;
 
-// Under light that the basis has in full, what is seen is what a render shows.
+// Under light that the basis represents exactly, the view equals a render.
 TEST_F(SlowCommandTransfer, GlossySurfacesLookAsRendered) {
   GltfWriter ball;
   const std::string model = writeBall(ball);
@@ -207,7 +207,7 @@ TEST_F(SlowCommandTransfer, GlossySurfacesLookAsRendered) {
   };
   run({"basis", model, "--at", "vertices", "--basis", "sh:2", "--glossy", "--clusters", "8",
        "--vectors", "16", "--samples", "512", "-o", folder_ / "t.gltf"});
-  // An image of the ball, whose radiance is `white` times what the file shows.
+  // An image of the ball, whose radiance is `white` times the file's colours.
   const auto seen = [&](const std::string& file, const std::string& eye, float white) {
     const std::string scene = folder_ / "seen.toml";
     std::ofstream(scene) << "model = \"" << file << "\"\n[camera]\nposition = [" << eye
@@ -232,7 +232,8 @@ TEST_F(SlowCommandTransfer, GlossySurfacesLookAsRendered) {
     relight("probe.exr", {"--view", view, "--white", "4"});
     return difference(seen(folder_ / "lit.glb", eye, 4), rendered);
   };
-  // What is left are the noise of 512 paths, 25 directions, and colours between vertices.
+  // The remaining error comes from the noise of 512 paths, 25 directions, and colours between
+  // vertices.
   EXPECT_LT(errorFrom(eye), 0.05);
   EXPECT_GT(errorFrom(other), 0.08) << "it must be able to fail";
 }

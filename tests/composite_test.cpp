@@ -277,8 +277,8 @@ TEST(SlowComposite, LayersOfAPlaceAreThoseOfTheWorld) {
 }
 
 // Adaptive passes take different numbers of samples of a pixel, and the layers are means all the
-// same: the ratio of a surface that the objects do not change is 1 on average, and L_noobj is that
-// of a render without objects.
+// same: the ratio is 1 on average on a surface that the objects do not change, and L_noobj equals a
+// render without objects.
 TEST(Composite, TwoAdaptivePassesAddMeans) {
   Worlds w;
   addQuad(w.scene, addMaterial(w.scene, lambert(Rgb(0.5f))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
@@ -345,7 +345,7 @@ TEST(Composite, TwoInterruptedPassesLeaveThePlate) {
   }
 }
 
-// The layers of the first surface are those of a pass with the objects.
+// The layers of the first surface equal those of a pass with the objects.
 TEST(Composite, TwoPassesHaveTheLayersOfSurfaces) {
   const Worlds w = stillLife();
   RenderSettings settings = smallRender(16, 16, 64, 3);

@@ -20,7 +20,7 @@ int countFor(std::string_view method, int lights);
 
 Constellation make(std::string_view method, const Image& map, int lights, uint64_t seed = 1);
 
-// Positive noise, without symmetry or equal texels.
+// A map of positive noise, without symmetry or equal texels.
 Image noise(int width, int height);
 
 std::vector<Image> realProbes(int maximum);

@@ -114,7 +114,7 @@ TEST(Convert, EveryMappingKeepsTheFluxOfLamps) {
   }
 }
 
-// There and back.
+// Converts there and back.
 TEST(SlowConvert, EveryMappingKeepsTheFluxOfGraceCathedral) {
   int found = 0;
   for (const char* file : {"debevec/grace_probe.hdr", "probulator/grace_latlong_small.hdr"}) {

@@ -44,8 +44,8 @@ TEST(SlowConvolve, AConstantMapKeepsItsValue) {
   }
 }
 
-// To what texels of 1.4 degrees, constant in themselves, differ from the gradient.
-// 1 + s . d becomes 1 + (n + 1) / (n + 2) s . d under a Phong lobe of exponent n.
+// Accurate to the difference between the gradient and constant texels of 1.4 degrees. 1 + s . d
+// becomes 1 + (n + 1) / (n + 2) s . d under a Phong lobe of exponent n.
 TEST(Convolve, OfAGradientHasAClosedForm) {
   const dvec3 s(0.3, -0.2, 0.5);
   const Image map = gradientProbe({256, 128}, Rgb(1), s);
@@ -74,7 +74,7 @@ TEST(Convolve, IntegralOfGgxHasAClosedForm) {
   }
 }
 
-// To the accuracy that convolve() states.
+// They agree to the accuracy that convolve() states.
 TEST(Convolve, AgreesWithTheDirectSum) {
   Image map = studioProbe({96, 48});
   map.setRgb(40, 12, Rgb(1e4f, 9e3f, 7e3f));  // a sun
@@ -93,7 +93,7 @@ TEST(Convolve, ByACosineIsIrradianceOverPi) {
   const std::vector<dvec3> exact = exactIrradiance(map, axes);
   dvec3 mean(0);
   for (const dvec3& e : exact) mean += e / kPiD / double(exact.size());
-  // The last has the general sums.
+  // The last of them uses the general sums.
   for (const ZonalKernel& kernel :
        {ZonalKernel::phong(1), ZonalKernel::ggx(1), ZonalKernel::phong(1.00001)}) {
     const std::vector<dvec3> found = convolve(map, kernel, axes);

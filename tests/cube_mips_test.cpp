@@ -41,8 +41,8 @@ dvec3 openGlDirection(int face, double s, double t) {
   }
 }
 
-// Each level of a gradient has its closed form, where OpenGL looks it up; to a tenth of what it
-// changes over a texel of the map.
+// Each level of a gradient has its closed form, where OpenGL looks it up; to a tenth of its change
+// over a texel of the map.
 TEST(SlowCubeMips, LevelsOfAGradient) {
   const dvec3 slope(0.5, -0.3, 0.2);
   const std::vector<CubeLevel> levels =
@@ -129,7 +129,7 @@ TEST_F(SlowCommandConvolve, WritesKtx2) {
   EXPECT_EQ(at<uint64_t>(file, 80) + at<uint64_t>(file, 88), file.size());  // the largest is last
 }
 
-// Prints what ktx-parse finds in a file, as JSON; of each level, the texel right below the middle
+// Prints what ktx-parse finds in a file, as JSON; for each level, the texel right below the middle
 // of each face.
 constexpr const char* kParse = R"(
   import { readFileSync } from 'node:fs';

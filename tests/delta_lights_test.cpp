@@ -111,7 +111,7 @@ TEST(DeltaLights, perfectMirrorsReflectTheProbeAndNoLights) {
 }
 
 // On a nearly perfect mirror, directional lights would show only as bright dots. Up to noise, the
-// image equals that of the unbiased strategy, and a mirror of albedo 1 conserves energy.
+// image equals the unbiased strategy's, and a mirror of albedo 1 conserves energy.
 TEST(DeltaLights, nearMirrorsReflectTheProbe) {
   const Camera camera = Camera::lookAt({1, 2, 3}, {0, 0, 0}, {0, 1, 0}, 0.7f);
   const RenderSettings settings = smallRender(16, 16, 64, 3);
@@ -253,7 +253,7 @@ TEST(SlowDeltaLights, laterHitsSampleEveryContributingLight) {
         EXPECT_NEAR(few[k] / all[k], 1, 0.02) << name << ", " << c.name;
         EXPECT_NEAR(fewBelow[k] / all[k], allBelow[k] / all[k], 0.02) << name << ", " << c.name;
       }
-      // Else the comparison of light from below would say nothing.
+      // Else the comparison of light from below would be meaningless.
       EXPECT_GT(allBelow.y, 5e-4 * all.y) << name << ", " << c.name;
     }
   }

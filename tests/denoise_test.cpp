@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The denoiser: it removes noise, keeps what is exact or explained by features, and knows its
-// error.
+// The denoiser: it removes noise, keeps details that are exact or explained by features, and knows
+// its error.
 #include "denoise/denoise.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ constexpr int kWidth = 75, kHeight = 50;  // neither is a multiple of a tile or 
 
 float random(uint64_t i, uint64_t purpose) { return toUnit(uint32_t(hash(i, purpose))); }
 
-// About normal, variance 1.
+// Approximately normal, with variance 1.
 float gauss(uint64_t i, uint64_t purpose) {
   float sum = -6;
   for (uint64_t k = 0; k < 12; ++k) sum += random(i, 100 * purpose + k);
@@ -268,7 +268,7 @@ TEST(Denoise, LimitsFireflies) {
   EXPECT_NEAR(found / added, 1, 0.1);
 }
 
-// Nor does it where a bright object is in the filter's window: the dark pixels between both stay
+// The same holds where a bright object is in the filter's window: the dark pixels between both stay
 // dark.
 TEST(Denoise, LimitsFirefliesBesideBrightPixels) {
   DenoiseInput input = noisy(0.02f, [](int x, int) { return x < kWidth / 2 ? 0.2f : 8.0f; });
@@ -408,7 +408,7 @@ TEST(Denoise, ExponentialIsAccurate) {
   EXPECT_EQ(expOfMinus(splat8(1e30f))[0], 0);
 }
 
-// What a render keeps for the denoiser.
+// The layers that a render keeps for the denoiser.
 struct Rendered {
   DenoiseInput input;
   Image mean;

@@ -79,7 +79,7 @@ TEST(DepthByKind, PassingAClearSheetIsNoBounce) {
       }
 }
 
-// Of a plastic, the parts of one bounce by each kind add up to all of it.
+// A plastic's parts of one bounce by each kind add up to all of it.
 TEST(DepthByKind, OneBounceIsTheSumOfItsKinds) {
   for (const float roughness : {0.0f, 0.3f, 0.8f}) {
     Material plastic;

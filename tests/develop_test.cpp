@@ -79,8 +79,8 @@ TEST(Develop, SigmaZeroChangesNothing) {
   EXPECT_EQ(blurred(image, 1e-3).texels, image.texels);
 }
 
-// Of one bright pixel, the hardest image, at each offset from the reduced pixels; relative to the
-// largest pixel of the exact blur. And of a step.
+// Compares blurs of one bright pixel, the hardest image, at each offset from the reduced pixels,
+// relative to the largest pixel of the exact blur; and blurs of a step.
 TEST(Develop, FastGaussianEqualsTheExactOne) {
   double worst = 0;
   for (const double sigma : {8.5, 11.0, 15.9, 16.0, 31.0, 32.0, 50.0})
@@ -144,7 +144,7 @@ TEST(Develop, StreaksOfAllAnglesKeepTheSumAndTheirDirection) {
     lamp.setRgb(50, 50, Rgb(100));
     const Image streak = blurMotion(lamp, {40, angle});
     EXPECT_NEAR(sum(streak), 300, 3e-3) << angle;
-    // The second moment along the segment is L^2 / 12; across, that of linear interpolation.
+    // The second moment along the segment is L^2 / 12; across it, that of linear interpolation.
     const double c = std::cos(angle * kPiD / 180), s = std::sin(angle * kPiD / 180);
     double along = 0, across = 0;
     for (int y = 0; y < 101; ++y)
@@ -178,7 +178,7 @@ TEST(Develop, VignetteIsThatOfAThinLens) {
   for (const auto& [x, y] : {std::pair(0, 0), {299, 0}, {0, 199}, {299, 199}})
     EXPECT_NEAR(image.rgb(x, y).x, expected, 1e-6);
   EXPECT_NEAR(image.rgb(150, 100).x, 2, 1e-4);
-  // A part of the picture darkens as the whole.
+  // A part of the picture darkens like the whole.
   Image part = filled(20, 10, 2);
   vignette(part, 0.4, {280, 190, 300, 200, 60});
   EXPECT_EQ(part.rgb(19, 9), image.rgb(299, 199));
@@ -286,8 +286,7 @@ TEST(Develop, GlareIsAMixtureOfGaussians) {
   }
 }
 
-// Of a field of view that is next to nothing, which a file may state: no blur wider than the
-// widest.
+// A file may state a field of view of almost 0: no blur is wider than the widest.
 TEST(Develop, GlareOfATinyFieldOfViewIsBounded) {
   for (const double pixelsPerDegree : {1e5, 1e9, 1e300, std::numeric_limits<double>::infinity()}) {
     const auto mixture = spencerGlare(pixelsPerDegree);

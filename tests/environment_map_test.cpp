@@ -142,7 +142,7 @@ TEST(EnvironmentMap, CavitiesAreTooBrightAndOccludedOnesTooDark) {
   EXPECT_NEAR(mapped, 0.7, 1e-3);
   EXPECT_GT(mapped, 1.1 * truth);
   EXPECT_LT(occluded, 0.95 * truth);
-  // One bounce is all that ambient occlusion knows.
+  // Ambient occlusion accounts for one bounce only.
   EXPECT_NEAR(occluded, mean("importance+direct"), 5e-3);
   EXPECT_EQ(mean("importance+environment-map+ao"), occluded);
 }
@@ -223,7 +223,8 @@ TEST(EnvironmentMap, SunsCastShadows) {
   EXPECT_LT(mean("suns+ambient-occlusion", roofed), 0.02 * mean("suns+ambient-occlusion", open));
 }
 
-// As the discs of the strategy `suns`: E / (pi sin^2(angle / 2)) within the given diameter.
+// The suns look like the discs of the strategy `suns`: E / (pi sin^2(angle / 2)) within the given
+// diameter.
 TEST(EnvironmentMap, SunsHaveTheGivenAngle) {
   Image map = constantProbe({256, 128}, Rgb(0.5f));
   map.setRgb(40, 20, Rgb(1e5f));

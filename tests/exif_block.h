@@ -18,7 +18,7 @@ inline ExifEntry exposureTime(uint32_t n, uint32_t d) { return {0x829a, n, d}; }
 inline ExifEntry fNumber(uint32_t n, uint32_t d) { return {0x829d, n, d}; }
 inline ExifEntry isoSpeed(uint32_t iso) { return {0x8827, iso, 0}; }
 
-// A first directory with an orientation alone.
+// A first directory with only an orientation.
 std::string orientationBlock(int orientation);
 
 // A first directory with a pointer to one with these entries.

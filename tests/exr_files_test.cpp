@@ -105,7 +105,7 @@ TEST(ExrFiles, ImagesAreTheirDisplayWindows) {
   check({{{-4, -4}, {19, 11}}, {{0, 0}, {15, 7}}});  // overscan
   check({{{3, -2}, {30, 5}}, {{0, 0}, {15, 7}}});    // some of both
   check({{{100, 50}, {107, 53}}, {{96, 48}, {111, 55}}});
-  // The data alone, for users that place it themselves.
+  // Only the data, for users that place it themselves.
   EXPECT_EQ(readImageFile(path).placement->x, 4);
   EXPECT_EQ(colorOfData(readImageFile(path), path).width, 8);
   writeParts(path, {colored("", color)}, {{{100, 0}, {107, 3}}, {{0, 0}, {15, 7}}});
@@ -140,7 +140,7 @@ TEST(ExrFiles, TheColourIsChosenByName) {
     EXPECT_EQ(layerOf(none), "none") << none.front();
 }
 
-// By words of the names that renderers give to their layers, wherever they are.
+// Recognises words in the names that renderers give to their layers, anywhere in them.
 TEST(ExrFiles, LayersWithoutLightAreNeverLight) {
   const auto isColor = [](const Names& channels) {
     const PartChannels part{"", channels};
@@ -191,7 +191,7 @@ TEST(ExrFiles, LayersWithoutLightAreNeverLight) {
     EXPECT_TRUE(isColor({channel})) << channel;
 }
 
-// As a mask, the channel of that name is what is wanted.
+// For a mask, the channel of that name is the right one.
 TEST(ExrFiles, MasksAreNoLight) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.exr";
@@ -205,7 +205,7 @@ TEST(ExrFiles, MasksAreNoLight) {
   EXPECT_EQ(maskOf(readImageFile(path), path).rgb(7, 3), Rgb(1, 2, 3));
 }
 
-// Of 8 x 4 texels; chroma (0: grey) has half the resolution (ImfRgba.h).
+// Writes 8 x 4 texels; chroma (0: grey) has half the resolution (ImfRgba.h).
 void writeLuminanceChroma(const std::string& path, Imf::PixelType type, float luminance) {
   Imf::Header header(8, 4);
   header.channels().insert("Y", Imf::Channel(type));
@@ -280,7 +280,7 @@ TEST(ExrFiles, PrimariesAreConverted) {
     writeParts(path, {white}, {}, acescg);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(readImage(path).rgb(0, 0)[c], 1, 1e-5);
   }
-  // CIE XYZ measures light and has no white to adapt to: that of D65 is (0.9505, 1, 1.089).
+  // CIE XYZ measures light and has no white to adapt to: D65 white is (0.9505, 1, 1.089).
   writeParts(path, {colored("", Rgb(0.95046f, 1, 1.08906f))}, {},
              Imf::Chromaticities(V(1, 0), V(0, 1), V(0, 0), V(1 / 3.f, 1 / 3.f)));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(readImage(path).rgb(0, 0)[c], 1, 1e-3);
@@ -338,8 +338,8 @@ TEST(ExrFiles, LayersOfColourAreConvertedAndDataAreNot) {
   EXPECT_EQ(findLayer(readImageFile(path), "a")->rgb(0, 0), color);
 }
 
-// Saturation, white and black are those of the channels that the sensor has: in Rec. 709 the red of
-// this colour is negative.
+// Saturation, white and black refer to the sensor's channels: in Rec. 709 the red of this colour is
+// negative.
 TEST(ExrFiles, PhotographsAreMergedInTheirPrimaries) {
   const TemporaryFolder folder;
   const Rgb color(0.1f, 0.8f, 0.2f), converted = fromAcesCg(folder, color);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this program reads again of an .exr, behind its image.
+// The state behind the image of an .exr, which this program reads again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -158,7 +158,7 @@ TEST(Checksum, ChangesWithEveryByte) {
   }
 }
 
-// Lists of items of any size come back, and such as differ in few bytes take less room.
+// Lists of items of any size come back, and items that differ in few bytes take less room.
 TEST(ExrState, PacksItems) {
   const TemporaryFolder folder;
   const std::string path = folder / "state.exr";

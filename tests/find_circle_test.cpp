@@ -49,7 +49,7 @@ TEST(FindCircle, InALargePicture) {
   expectCircle(photographOf(scene, 2000, 1500, circle), circle, 0.2, "large");
 }
 
-// In front of a pattern of stripes, with noise.
+// A ball in front of a pattern of stripes, with noise.
 TEST(FindCircle, InFrontOfAPattern) {
   const Probe studio(studioProbe({512, 256}));
   const Circle circle{{170.3, 121.8}, 90.4};
@@ -67,7 +67,7 @@ TEST(FindCircle, InFrontOfAPattern) {
   expectCircle(image, circle, 0.2, "pattern");
 }
 
-// How far a found circle is off: the largest error of the centre's coordinates and the radius.
+// The error of a found circle: the largest error of the centre's coordinates and the radius.
 double errorOf(const Circle& found, const Circle& truth) {
   const dvec2 centre = glm::abs(found.centre - truth.centre);
   return std::max({centre.x, centre.y, std::fabs(found.radius - truth.radius)});
@@ -82,8 +82,8 @@ dvec3 radianceInTheProbe(const BallScene& scene, const dvec2& p) {
   return dvec3(scene.probe.radiance(vec3(glm::normalize(ray))));
 }
 
-// Balls of constant reflectance and of chrome, in front of what differs from their rims; and in
-// front of the probe itself, which the rim of chrome continues.
+// Balls of constant reflectance and of chrome, in front of backgrounds that differ from their rims;
+// and in front of the probe itself, which the rim of chrome continues.
 TEST(SlowFindCircle, UnderRealProbes) {
   const Circle circle{{160.3, 158.8}, 139.2};
   for (const char* name : {"grace_probe.hdr", "galileo_probe.hdr", "beach_cross.hdr"}) {
@@ -114,7 +114,7 @@ TEST(SlowFindCircle, UnderRealProbes) {
   }
 }
 
-// What a camera makes of a picture: the blur of its lens, noise, and as an HDR image or in 8 bits.
+// A picture as a camera records it: the blur of its lens, noise, and as an HDR image or in 8 bits.
 struct CameraModel {
   double blur = 0;  // standard deviation in pixels
   bool isHdr = true;

@@ -36,8 +36,8 @@ TEST(Fisheye, DirectionToImageAndBack) {
       const dvec2 uv = directionToUv(lens, d);
       const std::optional<dvec3> back = uvToDirection(lens, uv);
       // On the rim, rounding may move it out. There the sine has its maximum if the projection is
-      // orthographic and shows 180 degrees: the image hardly moves, and 1e-16 of it are 1e-8
-      // radians.
+      // orthographic and shows 180 degrees: the image hardly moves, and 1e-16 in it corresponds to
+      // 1e-8 radians.
       if (!back) {
         EXPECT_NEAR(angle, lens.halfAngle(), 1e-9);
         return;
@@ -58,7 +58,7 @@ TEST(Fisheye, FollowsItsFormula) {
   EXPECT_NEAR((Fisheye{120, Stereographic}.radius(t)), std::tan(t / 2) / std::tan(h / 2), 1e-15);
   for (const Fisheye& lens : kLenses) {
     EXPECT_NEAR(lens.radius(lens.halfAngle()), 1, 1e-15) << fisheyeName(lens);
-    // Directions outside are outside of the disc, also where the sine falls again.
+    // Directions outside the field of view are outside the disc, also where the sine falls again.
     for (double angle = lens.halfAngle() + 0.01; angle < kPiD; angle += 0.05)
       EXPECT_GT(lens.radius(angle), 1) << fisheyeName(lens);
   }
@@ -107,8 +107,8 @@ TEST(Fisheye, OfTheWholeSphereIsAngularMapOrMirrorBall) {
   }
 }
 
-// There and back: the radiance inside the field of view is kept, to half a texel's change of the
-// gradient, and the rest is black.
+// Converts there and back: the radiance inside the field of view is kept, to half a texel's change
+// of the gradient, and the rest is black.
 TEST(Fisheye, ConvertsToAndFromALatLongMap) {
   const Image probe = gradientProbe({128, 64}, Rgb(1, 2, 3), {0.5, -0.3, 0.6});
   for (const Fisheye& lens : kLenses) {

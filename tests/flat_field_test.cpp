@@ -86,7 +86,7 @@ TEST(FlatField, APolynomialIsRecoveredToRounding) {
   EXPECT_LT(glm::distance(field.a2, truth.a2), 1e-9);
   EXPECT_LT(glm::distance(field.a4, truth.a4), 1e-9);
   EXPECT_LT(glm::distance(field.a6, truth.a6), 1e-9);
-  // Beyond 1.1 times the largest distance it stays as it is there.
+  // Beyond 1.1 times the largest distance the polynomial keeps its value there.
   const dvec2 outermost = samples.back().position - truth.centre;
   EXPECT_LT(glm::distance(field.at({200, 160}), field.at(truth.centre + 1.1 * outermost)), 1e-12);
 }

@@ -174,7 +174,7 @@ bool isSeenFromOutside(const Scene& scene) {
   });
 }
 
-// However deep: far from the opening its angle is that of a window.
+// This holds at any depth: seen from far away, the opening has a window's angle.
 TEST(Framing, OpenBoxesAreSeenFromOutside) {
   for (const float depth : {5.0f, 10.0f, 20.0f, 40.0f}) {
     Scene box = room({{5, depth}, {5, 0}, {0, 0}, {0, depth}}, 5);

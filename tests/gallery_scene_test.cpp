@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The models of the gallery: closed forms of their shapes, and what every model needs to be lit
-// right.
+// The models of the gallery: closed forms of their shapes, and properties that every model needs to
+// be lit correctly.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -50,12 +50,12 @@ Rgb radianceOf(const Scene& scene, const Camera& camera, uint32_t samples = 1) {
       renderScene(scene, camera, black, "importance", smallRender(8, 8, samples, 1)).film.mean());
 }
 
-// From between the floor and a slab above y = 0.5, at the floor.
+// A view from between the floor and a slab above y = 0.5, at the floor.
 Camera underTheSlab() { return Camera::lookAt({0.5f, 0.4f, 0}, {0, 0, 0}, {0, 1, 0}, 0.001f); }
 
 double schlick(double cosine) { return 0.04 + 0.96 * std::pow(1 - cosine, 5); }
 
-// What the camera and mirrors are not to see lights a floor behind glass all the same.
+// A source hidden from the camera and mirrors still lights a floor behind glass.
 TEST(GlassShadows, InvisibleSunsAndAmbientLampsShineThroughGlass) {
   std::array<Image, 2> images;
   for (const bool isVisible : {false, true}) {
@@ -192,7 +192,7 @@ TEST(GlassShadows, OnlySmoothGlassLetsLightPass) {
   EXPECT_EQ(radianceOf(scene, underTheSlab()), Rgb(0));
 }
 
-// What the camera sees through glass is refracted all the same.
+// The camera's view through glass is still refracted.
 TEST(GlassShadows, TheCameraSeesRefraction) {
   const Probe probe(studioProbe({64, 32}));
   Scene scene;

@@ -58,7 +58,7 @@ TEST(ViewGrid, InterpolatesBetweenItsDirections) {
     }
 }
 
-// A Lambertian surface has the same radiance towards each node: albedo times that of a white one.
+// A Lambertian surface has the same radiance towards each node: albedo times a white surface's.
 // Each is a mean of `samples` values of Y_k, of a variance below 1.
 TEST(GlossyTransfer, LambertianSurfacesAreDiffuse) {
   const Scene scene = sphereOf(lambert(Rgb(0.5f)));
@@ -91,7 +91,7 @@ TEST(GlossyTransfer, MetalsShowTheirMirrorDirection) {
       EXPECT_LT(constant, 1.02);
       const vec3 view = ViewGrid::direction(node);
       const vec3 mirror = frame.toWorld(vec3(-view.x, -view.y, view.z));
-      // The first band, as a vector, points where light comes from that the surface reflects.
+      // The first band, as a vector, points towards the light that the surface reflects.
       const vec3 from = glm::normalize(vec3(row[3].x, row[1].x, row[2].x));
       same += double(glm::dot(from, mirror));
       opposite += double(glm::dot(from, frame.toWorld(view)));

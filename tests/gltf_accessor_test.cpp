@@ -43,7 +43,7 @@ TEST(GltfAccessor, NormalisedSignedHasTwoCodesForMinusOne) {
       w.accessor(w.view(std::vector<int8_t>{-128, -127, 127, 0, 0, 0, 0, 99, 127, 0, 0, 0}, 4),
                  kByte, "VEC3", 3, 0, true);
   w.add("nodes", {{"mesh", w.mesh({{"attributes", {{"POSITION", positions}}}})}});
-  // Three bytes and one of padding per vertex.
+  // Each vertex has three bytes and one of padding.
   EXPECT_EQ(w.load().meshes[0].positions, (std::vector<vec3>{{-1, -1, 1}, {0, 0, 0}, {1, 0, 0}}));
 }
 

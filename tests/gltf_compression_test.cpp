@@ -229,7 +229,7 @@ TEST(GltfCompression, DracoWithTooManyTrianglesIsRejectedBeforeDecoding) {
   EXPECT_NE(dracoSquare(noise, Data(50, 7)).errorMessage().find("is not Draco"), std::string::npos);
 }
 
-// With any single byte changed, and truncated anywhere.
+// Data with any single byte changed, and data truncated anywhere.
 TEST(GltfCompression, DamagedDataNeverCrashes) {
   int rejected = 0;
   for (const Data& good : {kSequential, kEdgebreaker})

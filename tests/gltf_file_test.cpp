@@ -49,7 +49,7 @@ std::string errorMessageOf(const std::filesystem::path& path,
   return "";
 }
 
-// Chunks must end at multiples of 4 bytes, but not all writers see to that.
+// Chunks must end at multiples of 4 bytes, but not all writers ensure that.
 TEST(GltfFile, GlbWithoutPadding) {
   GltfWriter w;
   addTriangle(w);

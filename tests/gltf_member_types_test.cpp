@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Members of other types than the specification's: each is refused by its path.
+// Members whose types differ from the specification's: each is refused by its path.
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
@@ -101,7 +101,7 @@ std::string complaintOf(json root) {
   return "";
 }
 
-// Values of all types but that of `value`.
+// Values of all types but the type of `value`.
 std::vector<json> valuesUnlike(const json& value) {
   std::vector<json> others;
   for (const char* text : {"null", "true", "\"1\"", "[]", "{}", "0.5", "-1", "4294967296e9"}) {
@@ -156,7 +156,7 @@ TEST(GltfMemberTypes, MessagesNameTheTypeAndTheValue) {
             "nodes[0].extensions.KHR_node_visibility.visible: must be true or false, not null");
 }
 
-// Buffers may exceed 4 GB, and what other programs add may be anything.
+// Buffers may exceed 4 GB, and other programs may add anything.
 TEST(GltfMemberTypes, WhatTheSpecificationAllowsPasses) {
   json root = kEveryMember;
   root["buffers"][0]["byteLength"] = 5000000000u;

@@ -123,7 +123,7 @@ TEST(Gltf, NodesMayFlattenTheirMeshes) {
       GltfWriter w;
       const double half = degrees * kPiD / 360;
       const json turn = {0.6 * std::sin(half), 0, 0.8 * std::sin(half), std::cos(half)};
-      // Two sides of a roof, with normals that are not the triangles'.
+      // Two sides of a roof, whose normals differ from the triangles'.
       const int mesh =
           w.mesh({{"attributes",
                    {{"POSITION", w.vec3s({0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0, -1, 1, 0, 0, 0, 1})},

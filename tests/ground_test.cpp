@@ -63,10 +63,10 @@ TEST(Ground, IsAMatteNodeOfTheScene) {
   const Bounds box = bounds(scene, scene.instances[1]);
   EXPECT_EQ(vec2(box.min.x, box.max.z), vec2(-2, 5));
   EXPECT_NEAR(box.max.y, 0.5f, 1e-4);
-  EXPECT_LT(box.max.y, 0.5f);  // below what lies on it
+  EXPECT_LT(box.max.y, 0.5f);  // below the objects on it
 }
 
-// Half of the pixels show other things; the median is that of the ground.
+// Half of the pixels show other things; the median is the ground's.
 TEST(Ground, TheProbesScaleIsThatOfThePlatesMedian) {
   Image plate(30, 20, 3);
   std::vector<size_t> pixels;

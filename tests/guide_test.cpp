@@ -167,7 +167,7 @@ TEST(SlowGuide, AgreesWithTheUnguidedRenderInEveryPixel) {
   EXPECT_GT(welchTest(Moments::of(means[0]), Moments::of(means[1])), 1e-3);
 }
 
-// Light from the walls of a box around the room, which has other directions for each point.
+// Light from the walls of a box around the room, whose directions differ from point to point.
 TEST(SlowGuide, AgreesInSurroundings) {
   constexpr int kSeeds = 16, kSize = 32, kTiles = 16;
   const Scene scene = room();
@@ -203,7 +203,7 @@ TEST(SlowGuide, AgreesInSurroundings) {
   EXPECT_LT(squared[1], squared[0]);
 }
 
-// At equal samples; guided light samples take up to 1.7 times the time.
+// Compares at equal samples; guided light samples take up to 1.7 times the time.
 TEST(SlowGuide, ReducesTheVarianceInARoom) {
   const Scene scene = room();
   double squared[2] = {0, 0};

@@ -48,8 +48,8 @@ void expectCompleteLine(const std::string& message) {
   EXPECT_EQ(count('"') % 2, 0) << message;
 }
 
-// The reason for which the file is rejected, or "" if it renders without invalid samples.
-// Exceptions other than InputError fail the test; a crash or a hang fails all of them.
+// The reason why the file is rejected, or "" if it renders without invalid samples. Exceptions
+// other than InputError fail the test; a crash or a hang fails all of them.
 std::string modelErrorMessage(const fs::path& path) {
   try {
     const Scene scene = loadGltf(path.string(), {}, nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the headers of .hdr, PNG, JPEG and TIFF files say of light, colour and orientation.
+// Statements about light, colour and orientation in the headers of .hdr, PNG, JPEG and TIFF files.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -54,7 +54,7 @@ TEST(ImageHeaders, RadianceLinesAreAppliedOrNamed) {
   check("EXPOSURE=1.0\n", plain, nullptr);
   check("COLORCORR=1 .5 .25\n", Rgb(1), "COLORCORR=1 0.5 0.25");
   check("COLORCORR=2 2 2\nCOLORCORR= .5 .5 .5\n", plain, nullptr);
-  // What real files have: Photoshop's lines, a doubled first line.
+  // Lines of real files: Photoshop's, and a doubled first line.
   check("PRIMARIES=0 0 0 0 0 0 0 0\nGAMMA=1\n#?RADIANCE\n# comment = 1\n", plain, nullptr);
   check("PRIMARIES=0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329\n", plain, nullptr);
   check("GAMMA=2.2\n", plain, "GAMMA");
@@ -82,8 +82,8 @@ TEST(ImageHeaders, RepeatedLinesAreSaidOnce) {
         << message.text;
 }
 
-// Sides beyond 32 and 64 bits.
-// Their names would be those of attributes of the .exr: reserved, of another type, or none.
+// Sides beyond 32 and 64 bits. Their names would be names of attributes of the .exr: reserved, of
+// another type, or none.
 TEST(ImageHeaders, CommentsOfAnHdrAreNoAttributes) {
   const TemporaryFolder folder;
   const std::string path =
@@ -143,7 +143,7 @@ TEST(ImageHeaders, GammaAndPrimariesOfAPng) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-6f);
   };
   expectNear(read(""), srgb);
-  expectNear(read(chunk("gAMA", {45455})), srgb);  // what writers of sRGB state
+  expectNear(read(chunk("gAMA", {45455})), srgb);  // as writers of sRGB state
   expectNear(read(chunk("gAMA", {100000})), fraction);
   expectNear(read(chunk("gAMA", {50000})), fraction * fraction);
   expectNear(read(chunk("gAMA", {0})), srgb);
@@ -156,7 +156,7 @@ TEST(ImageHeaders, GammaAndPrimariesOfAPng) {
   EXPECT_GT(converted.x, srgb.x * 1.05f);
   EXPECT_LT(converted.y, srgb.y);
   expectNear(read(p3, IntegerTexels::Linear), fraction);  // raw levels are not light
-  // That of a file of light: GIMP and others write the one of sRGB.
+  // The cHRM of a file of light: GIMP and others write sRGB's.
   expectNear(read(chunk("cHRM", {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})), srgb);
 }
 
@@ -211,8 +211,8 @@ TEST(ImageHeaders, CodePointsOfAPng) {
   }
 }
 
-// Photographs of 1 texel and two exposures, merged: the channels' encoding and primaries are those
-// that the file states, and what is not decoded elsewhere is refused.
+// Photographs of 1 texel and two exposures, merged: the channels have the encoding and primaries
+// that the file states, and encodings that are not decoded elsewhere are refused.
 TEST(ImageHeaders, PhotographsAreOfWhatTheirPngStates) {
   const TemporaryFolder folder;
   const std::array<uint8_t, 3> texel = {200, 100, 50};
@@ -229,7 +229,7 @@ TEST(ImageHeaders, PhotographsAreOfWhatTheirPngStates) {
   const auto expectAs = [&](const std::string& chunks, const char* response) {
     const MergedPhotographs found = merged(chunks, chunks, "");
     EXPECT_EQ(found.responseName, response);
-    // Of two equal pictures each channel has one factor.
+    // For two equal pictures each channel has one factor.
     const Rgb plain = merged("", "", response).image.radiance.rgb(0, 0);
     const Rgb decoded = readImage(saved(folder / "c.png", png(texel, chunks))).rgb(0, 0);
     const Rgb undone = readImage(saved(folder / "c.png", png(texel, ""))).rgb(0, 0);
@@ -286,14 +286,14 @@ TEST(ImageHeaders, AllReadersTurnAlike) {
                 oriented(stored, orientation).texels)
           << name << orientation;
     }
-    // Some PNG files have the block with its name.
+    // Some PNG files have the block with its JPEG name.
     const std::string named = std::string("Exif\0\0", 6) + orientationBlock(orientation);
     EXPECT_EQ(readImage(saved(folder / "b.png", withExif(seed("a.png"), named))).texels,
               oriented(readImage(saved(folder / "b.png", seed("a.png"))), orientation).texels);
   }
 }
 
-// Width over height is what the resolution of the height is over that of the width.
+// Width / height equals the vertical / the horizontal resolution.
 TEST(ImageHeaders, PixelsThatAreNotSquareAreSaid) {
   const TemporaryFolder folder;
   const auto said = [&](const std::string& file) {
@@ -327,7 +327,7 @@ TEST(ImageHeaders, PixelsThatAreNotSquareAreSaid) {
         TiffWriter::file({{1, 1, "abc", 2, 3, 8, 1, 1, {{282, 5, {x, 1}}, {283, 5, {y, 1}}}}}),
         part);
   }
-  // On its side.
+  // The picture lies on its side.
   expectSaid(
       TiffWriter::file(
           {{1, 1, "abc", 2, 3, 8, 1, 1, {{274, 3, {6}}, {282, 5, {2, 1}}, {283, 5, {1, 1}}}}}),

@@ -170,7 +170,7 @@ TEST(ImageMetadata, DamagedMetadataOfATiffIsSkipped) {
   EXPECT_EQ(readImage(saved(folder / "b.tif", laden)).texels, plain.texels);
 }
 
-// As an image, as a probe, and as a texture at every location in a model.
+// Read as an image, as a probe, and as a texture at every location in a model.
 TEST(ImageMetadata, DamagedProfilesAreIgnored) {
   const TemporaryFolder folder;
   const Bytes png = inserted(kPng, 8 + 25, chunk("iCCP", Bytes(40)));
@@ -190,7 +190,7 @@ TEST(ImageMetadata, DamagedProfilesAreIgnored) {
   EXPECT_EQ(decodeImage(png, "a").texels8, decodeImage(kPng, "a").texels8);
 }
 
-// A profile that is not applied is said, unless it is known to be that of sRGB.
+// A profile that is not applied is reported, unless it is known to be sRGB's.
 TEST(ImageMetadata, ProfilesThatAreNotAppliedAreNamed) {
   const TemporaryFolder folder;
   const auto isSaid = [&](const std::string& name, const Bytes& bytes,
@@ -215,12 +215,12 @@ TEST(ImageMetadata, ProfilesThatAreNotAppliedAreNamed) {
   EXPECT_FALSE(isSaid("a.jpg", seed("a.jpg")));
   EXPECT_FALSE(isSaid("a.png", kPng));
   EXPECT_FALSE(isSaid("a.tif", seed("a.tif")));
-  // Chunks that say what the profile does are used.
+  // Chunks that state the same as the profile are used.
   const Bytes linear = chunk("gAMA", {0, 1, 0x86, 0xa0});
   EXPECT_FALSE(isSaid("a.png", inserted(kPng, 8 + 25, joined({chunk("iCCP", wide), linear}))));
 }
 
-// Cameras that are set to Adobe RGB tell so by EXIF's ColorSpace, often alone.
+// Cameras that are set to Adobe RGB state that in EXIF's ColorSpace, often only there.
 TEST(ImageMetadata, ColoursOfExifThatAreNotAppliedAreNamed) {
   constexpr uint16_t kColorSpace = 0xa001;
   const TemporaryFolder folder;

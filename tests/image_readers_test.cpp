@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers of PNG and JPEG against those of OpenImageIO, on files of every kind that these
-// formats have, whole and truncated. What is missing of a JPEG OpenImageIO makes up, and we refuse.
+// The readers of PNG and JPEG against OpenImageIO's, on files of every kind that these formats
+// have, whole and truncated. OpenImageIO makes up the missing part of a JPEG; we refuse the file.
 #include <gtest/gtest.h>
 
 #include <csetjmp>
@@ -115,7 +115,7 @@ Bytes makeJpeg(const JpegKind& kind, int width, int height) {
   return file;
 }
 
-// What is read: fractions, with associated alpha; empty: refused.
+// The image read: fractions, with associated alpha; empty: refused.
 std::vector<float> byModule(const char* format, const Bytes& file) try {
   const auto image = openModuleImage(format, file, "a file");
   const ModuleImageHeader& header = image->header();
@@ -210,7 +210,7 @@ TEST(ImageReaders, JpegOfEveryKind) {
     expectSameTexels("jpeg", makeJpeg(kind, 37, 29), inWords(kind));
 }
 
-// Half a picture is none, of whatever kind, also as a texture.
+// Half a picture of any kind is refused, also as a texture.
 TEST(ImageReaders, TruncatedJpegIsRefused) {
   const TemporaryFolder folder;
   constexpr size_t kEndMarker = 2;
@@ -225,7 +225,7 @@ TEST(ImageReaders, TruncatedJpegIsRefused) {
   }
 }
 
-// With all bits of its one scan; of several, others might be missing.
+// A file with all bits of its only scan; if it had several, others might be missing.
 TEST(ImageReaders, JpegWithoutItsEndMarker) {
   const TemporaryFolder folder;
   constexpr size_t kEndMarker = 2;

@@ -109,7 +109,7 @@ TEST(Image, HdrExposureAndOrientationAreApplied) {
   EXPECT_EQ(image.rgb(0, 0), Rgb(0.0625f, 0.5f, 0.0625f));
 }
 
-// "Radiance File Formats", picture files: the first axis is that of the rows in their order.
+// "Radiance File Formats", picture files: the first axis gives the order of the rows.
 TEST(Image, HdrRowsInEachOrder) {
   const TemporaryFolder folder;
   std::string texels;
@@ -177,10 +177,10 @@ TEST(Image, PfmBigEndianAndGrey) {
           std::string("Pf\n1 2\n") + scale + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
     EXPECT_EQ(readImage(folder / "a.pfm").texels, image.texels) << scale;
   }
-  // A texel may begin with what ends a line.
+  // A texel may begin with a byte that ends a line.
   write(folder / "a.pfm", "Pf\n1 1\n1.0\n" + std::string("\n\n\0\0", 4));
   EXPECT_EQ(readImage(folder / "a.pfm").rgb(0, 0), Rgb(std::bit_cast<float>(0x0a0a0000)));
-  // The magnitude of the scale is a factor, which is said.
+  // The magnitude of the scale is a factor, which is reported.
   for (const char* scale : {"2.0", "0.25", "1e10"}) {
     write(folder / "scaled.pfm",
           std::string("Pf\n1 2\n") + scale + "\n" + std::string("\x3f\x80\0\0\x40\0\0\0", 8));

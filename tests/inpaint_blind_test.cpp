@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What directions get that no photograph shows.
+// The fill of directions that no photograph shows.
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -65,7 +65,7 @@ TEST(InpaintBlind, ContinuesAHarmonicFunction) {
   }
 }
 
-// Nothing shown is changed, and nothing filled is out of the range of the rest.
+// Nothing shown is changed, and no filled texel is outside the range of the rest.
 TEST(InpaintBlind, KeepsWhatIsShown) {
   const Image map = studioProbe(kSize);
   Assembly assembly = withHole(map, {0.6, 0, 0.8}, 50);

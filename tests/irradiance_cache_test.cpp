@@ -18,7 +18,7 @@ namespace {
 
 const std::atomic<bool> kNever = false;
 
-// A scene with what is needed to trace it.
+// A scene with everything that is needed to trace it.
 struct Traced {
   Scene scene;
   World world;
@@ -126,7 +126,7 @@ TEST(IrradianceCache, AnOpenFloorIsOneRecord) {
   EXPECT_TRUE(std::isinf(cache.records()[0].radius));
 }
 
-// The wall of corner() is one that a single far record would miss.
+// A single far record would miss the wall of corner().
 TEST(IrradianceCache, FindsAWallBehindARecordThatSeesNothing) {
   Scene scene = corner();
   addQuad(scene, 0, {-400, 0, 4}, {390, 0, 0}, {0, 0, -8});
@@ -155,7 +155,7 @@ TEST(IrradianceCache, GradientsAreDifferences) {
   EXPECT_NEAR(gradient(here.translation).x, perMetre, 0.1f * perMetre);
   EXPECT_NEAR(gradient(here.translation).z, 0, 0.1f * perMetre);
   EXPECT_NEAR(gradient(here.translation).y, 0, 1e-6f);
-  // Of the normal, towards the wall and along it.
+  // The gradient by rotation of the normal, towards the wall and along it.
   const auto turned = [&](const vec3& towards) {
     const vec3 normal = glm::normalize(up + 0.1f * towards);
     const float actual = luminance(recordAt(traced, {0, 1, 0}, normal, kSamples).irradiance);
@@ -198,7 +198,7 @@ TEST(IrradianceCache, WeightsFallToNothing) {
   EXPECT_NEAR(cache.find({0.3001f, 0, 0}, up)->x, 1, 0.01f);  // the second one begins
   EXPECT_NEAR(cache.find({0.4f, 0, 0}, up)->x, 2, 1e-5f);
   EXPECT_FALSE(cache.find({0.1f, 0, 0}, {1, 0, 0}));
-  EXPECT_FALSE(cache.find({0.1f, -0.2f, 0}, up));  // behind what the record sees
+  EXPECT_FALSE(cache.find({0.1f, -0.2f, 0}, up));  // behind the surfaces that the record sees
   EXPECT_TRUE(cache.find({0.1f, 0.2f, 0}, up));
 }
 
@@ -300,8 +300,8 @@ TEST(SlowIrradianceCache, CountsLightBehindGlassOnce) {
   EXPECT_NEAR(changeByCache(straight, sky, smallRender(24, 24, 256, 4)), 0, 0.03);
 }
 
-// Two tinted sheets at one distance under a white ceiling, and a lamp flush with a sheet: what lies
-// behind the first of the surfaces.
+// Two tinted sheets at one distance under a white ceiling, and a lamp flush with a sheet: the light
+// from behind the first of the surfaces.
 TEST(SlowIrradianceCache, MeetsAllSurfacesOfAPlace) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
@@ -362,7 +362,7 @@ TEST(SlowIrradianceCache, SeesThroughHiddenBacks) {
   EXPECT_NEAR(changeByCache(scene, sky, smallRender(48, 48, 128, 4)), 0, 0.02);
 }
 
-// What rough glass and mirrors throw onto the floor is in the records alone.
+// Only the records have the light that rough glass and mirrors throw onto the floor.
 TEST(SlowIrradianceCache, LosesNoLightBehindRoughGlass) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});

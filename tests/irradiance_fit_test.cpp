@@ -84,7 +84,7 @@ TEST(CosinePattern, ClosedFormsAgreeWithASumOverNormals) {
   }
 }
 
-// But for the extent of a texel or block, which a point has not.
+// They agree apart from the extent of a texel or block, which a point does not have.
 TEST(RadiancePoints, HaveTheProductsOfTheProbe) {
   const Image probe = studioProbe({128, 64});
   const std::vector<vec3> normals = texelDirections(kNormals);
@@ -213,7 +213,7 @@ TEST(IrradianceFit, AmbientLightReplacesAConstantProbe) {
   EXPECT_GT(fitIrradiance(constantProbe(kSize, Rgb(1, 2, 3)), {.count = 3}).meanError, 5);
 }
 
-// Texels of coarse maps are no points: the error is that of the same light on a fine map.
+// Texels of coarse maps are no points: the error is the same as for the same light on a fine map.
 TEST(IrradianceFit, OfOneTexelIsThatOfAConstantProbe) {
   const double fine = fitIrradiance(constantProbe(kSize, Rgb(2)), {.count = 4}).meanError;
   for (const ImageSize& size : {ImageSize{1, 1}, {2, 1}, {1, 40}, {100, 1}})

@@ -130,9 +130,9 @@ TEST(SlowAmbientFit, ErrorsOnRealProbes) {
   if (found == 0) GTEST_SKIP() << "no shared probes";
 }
 
-// A hall of 12 x 6.6 x 18 m, seen from 1.6 m above the middle of its red floor. Three windows of
-// 3 x 3 m in the wall at -X; the wall opposite is nearly white, and lit by them (as that of Madsen
-// et al. 2003, Fig. 4).
+// A hall of 12 x 6.6 x 18 m, seen from 1.6 m above the middle of its red floor. Three windows of 3
+// x 3 m in the wall at -X; the wall opposite is nearly white, and lit by them (as in Madsen et al.
+// 2003, Fig. 4).
 struct Hall {
   static constexpr double kX = 6, kFloor = -1.6, kCeiling = 5, kZ = 9;
   static constexpr double kWindows[3] = {-6, 0, 6};  // z of their middles

@@ -45,8 +45,8 @@ TEST(Icosphere, DistancesBetweenNeighboursAreBounded) {
   }
 }
 
-// Also if the map is a single texel, or a single row: only the rows that the horizon cuts make the
-// sum too small.
+// This holds also if the map is a single texel, or a single row: only the rows that the horizon
+// cuts make the sum too small.
 TEST(Irradiance, OfAConstantMap) {
   const std::vector<vec3> normals = icosphereNormals(2);
   for (const ImageSize& size : {ImageSize{1, 1},
@@ -105,7 +105,7 @@ dvec3 texelMoment(int x, int y, int width, int height) {
           horizontal * (std::sin(phi1) - std::sin(phi0))};
 }
 
-// The same sum over parts of texels, each of which is all above the horizon or all below it.
+// The same sum over parts of texels, each entirely above the horizon or entirely below it.
 dvec3 sumOverCells(const Image& map, const vec3& normal, int perTexel) {
   dvec3 sum(0);
   for (int y = 0; y < perTexel * map.height; ++y)
@@ -242,7 +242,7 @@ TEST(ShIrradiance, OfAGradientIsExact) {
             2e-4);
 }
 
-// Bands above 2 contribute little to the irradiance of a smooth probe, and much to that of a sun.
+// Bands above 2 contribute little to the irradiance of a smooth probe, and much to a sun's.
 TEST(ShIrradiance, IsAccurateToOnePercentOnSmoothProbesButNotUnderASun) {
   const std::vector<vec3> normals = icosphereNormals(3);
   const ClearSky sky{.sunElevation = 30};

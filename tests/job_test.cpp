@@ -199,7 +199,8 @@ TEST(Job, OnlyWhatTheSceneIsMadeOfLoadsItAgain) {
   EXPECT_EQ(loadAgain, ofTheScene);
 }
 
-// Also where the scene is far from the world's origin. Only the image's size may be the models'.
+// This holds also where the scene is far from the world's origin. Only the image's size may come
+// from the models.
 TEST(Job, LoadingChangesNothingOfTheDescription) {
   const TemporaryFolder folder;
   writeRichScene(folder);
@@ -238,7 +239,8 @@ RenderDescription fromMemory(float height, float radiance) {
   return description;
 }
 
-// A white surface under a white probe vanishes; the bits are those of the same model in a file.
+// A white surface under a white probe vanishes; the bits are the same as for the same model in a
+// file.
 TEST(Job, RendersArrays) {
   const RenderDescription description = fromMemory(0, 0.5f);
   const LoadedScene loaded = loadScene(description);

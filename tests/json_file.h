@@ -8,13 +8,13 @@
 
 namespace chromeball {
 
-// Throw nlohmann::json::parse_error.
+// These throw nlohmann::json::parse_error.
 nlohmann::json parseJson(const std::string& text);
 nlohmann::json jsonOfFile(const std::string& path);
 
 }  // namespace chromeball
 
-// By these names GoogleTest finds them.
+// GoogleTest finds them by these names.
 NLOHMANN_JSON_NAMESPACE_BEGIN
 void PrintTo(const json& value, std::ostream* out);
 void PrintTo(const ordered_json& value, std::ostream* out);

@@ -38,7 +38,7 @@ void expectErrors(const Image& map, const LevelCut& variant, const Errors& expec
 constexpr LevelCut kCentre{.place = LightPlace::Centre};
 constexpr LevelCut kFlat{.measure = RegionMeasure::MapArea, .place = LightPlace::Centre};
 
-// The numbers are those of an independent implementation.
+// The numbers come from an independent implementation.
 TEST(SlowLevelCut, CentresInGalileosTombErrAsPublished) {
   const auto map = smallProbe("debevec/galileo_probe.hdr");
   if (!map) GTEST_SKIP() << "no Galileo probe";
@@ -79,7 +79,7 @@ TEST(SlowLevelCut, CentresInStPetersErrAsInAnotherImplementation) {
 }
 
 // Under a sky without ground, centres are far from the sun until its region is small. The other
-// implementation finds 0.555 at last: its horizons do not cut texels, of which the sun's is large.
+// implementation finds 0.555 at last: its horizons do not cut texels, and the sun's is large.
 TEST(SlowLevelCut, CentresAndCentroidsUnderASkyWithoutGround) {
   auto map = smallProbe("polyhaven/qwantani_afternoon_puresky_1k.hdr");
   if (!map) GTEST_SKIP() << "no sky";

@@ -11,8 +11,8 @@
 namespace chromeball::light_areas_test {
 namespace {
 
-// What the sum over the texels of a map says of the lights, for regions of any shape: sum of
-// radiance x solid angle, and sum of density x solid angle, which is 1 for each region.
+// Sums over the texels of a map for the lights, with regions of any shape: sum of radiance x solid
+// angle, and sum of density x solid angle, which is 1 for each region.
 void expectEnergyAndSolidAngles(const Image& map, const RegionAreas& areas) {
   dvec3 energy(0), power(0);
   double regions = 0, solidAngle = 0;

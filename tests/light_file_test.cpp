@@ -134,7 +134,7 @@ TEST(LightFile, RadianceOfLightsWithAnAngle) {
   EXPECT_NEAR(lights[0]["radiance"][0].get<double>() * projectedSolidAngle(1), 5, 1e-5);
   EXPECT_TRUE(lights[1].contains("radiance"));
   EXPECT_FALSE(lights[2].contains("radiance"));
-  // A radiance beyond a float.
+  // A radiance beyond the range of a float.
   rig.lights[0].irradiance.x = 3e37f;
   EXPECT_THROW(writeLights(folder / "b.json", rig), RunError);
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.json"}));

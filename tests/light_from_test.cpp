@@ -254,8 +254,8 @@ TEST(LightList, RefusesOthers) {
           "one of the three was edited");
 }
 
-// Of a light without an angle, one of 20 degrees and ambient light, on a white floor that faces +Z:
-// L = (E1 cos1 + E2 cos2) / pi + ambient.
+// A light without an angle, one of 20 degrees and ambient light, on a white floor that faces +Z
+// give L = (E1 cos1 + E2 cos2) / pi + ambient.
 TEST(LightList, LightsAScene) {
   const WhiteFloor folder(
       "[camera]\nposition = [0.3, 0.3, 2]\nlook_at = [0.3, 0.3, 0]\nfov = 2\n"

@@ -86,7 +86,7 @@ double relativeDifference(const Image& a, const Image& b) {
   return worst;
 }
 
-// With every strategy, and where the probe is on the walls of a room.
+// Groups add up with every strategy, and where the probe is on the walls of a room.
 TEST(SlowLightGroups, AddUpToThePicture) {
   const LitScene scene;
   scene.write("room.toml",
@@ -149,7 +149,7 @@ TEST(LightGroups, AreThePictureOfTheSourceAlone) {
   EXPECT_GT(meanColor(group).x, 0.01);
 }
 
-// Gains of powers of two are exact: the bits are those of a render whose lights have them.
+// Gains of powers of two are exact: the bits equal those of a render whose lights have them.
 TEST(LightGroups, RelightToTheBitsOfARender) {
   const LitScene scene;
   const ImageFile before = render(scene, {"--aov", "light_groups"});

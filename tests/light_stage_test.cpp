@@ -43,7 +43,7 @@ Image relit(const LightStage& stage, const std::vector<Rgb>& weights) {
   return sum;
 }
 
-// Of the whole picture's mean.
+// The largest difference as a fraction of the whole picture's mean.
 double largestDifference(const Image& a, const Image& b) {
   double most = 0, sum = 0;
   for (size_t i = 0; i < a.texels.size(); ++i) {
@@ -103,7 +103,7 @@ TEST(DirectionBasis, ParsesNames) {
     EXPECT_THROW(DirectionBasis(name, "test"), InputError) << name;
 }
 
-// The cells are a partition, of which each is where its functions' directions are.
+// The cells are a partition, and each contains its function's directions.
 TEST(SlowDirectionBasis, CellsHaveTheirSolidAngles) {
   const DirectionBasis boxes("lat-long:32x16", "test"), cube("cube:8", "test"),
       faces("icosphere:0", "test");
@@ -316,7 +316,8 @@ TEST(Relight, KeepsTheLargest) {
   EXPECT_EQ(same[0], 2);
 }
 
-// Of a matte plane: albedo / pi times the cosine, whose mean over a row of boxes is exact.
+// The reflectance function of a matte plane: albedo / pi times the cosine, whose mean over a row of
+// boxes is exact.
 TEST(LightStage, ReflectanceFunctionOfAPlaneIsItsCosine) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert({0.5f, 0.5f, 0.25f})), {-9, 0, 9}, {18, 0, 0},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a render will take is stated before, agrees with what it took, and is refused if it is too
-// much. Small scenes: the numbers of large ones are in docs/measured/results.md.
+// The memory that a render will take is stated before, agrees with the measured one, and is refused
+// if it is too much. Small scenes: the numbers of large ones are in docs/measured/results.md.
 #include "session/memory_estimate.h"
 #include "base/json.h"
 #include "base/json_text.h"

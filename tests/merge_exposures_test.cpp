@@ -29,8 +29,8 @@ struct Errors {
   size_t channels = 0;
 };
 
-// Of the channels with a level between 20 and 235 in some exposure. The weighted mean of logarithms
-// errs at most by the weighted mean of the exposures' rounding errors.
+// Errors of the channels with a level between 20 and 235 in some exposure. The weighted mean of
+// logarithms errs at most by the weighted mean of the exposures' rounding errors.
 Errors errorsOf(const Image& merged, const Image& radiance, std::span<const Exposure> exposures) {
   Errors errors;
   for (size_t i = 0; i < radiance.texels.size(); ++i) {

@@ -197,7 +197,7 @@ double rmsDifference(const std::vector<double>& a, const std::vector<double>& b)
   return std::sqrt(sum / double(a.size()));
 }
 
-// The contrast of the image as a fraction of that of the reference.
+// The contrast of the image as a fraction of the reference's.
 double contrast(const std::vector<double>& image, const std::vector<double>& reference) {
   double both = 0, own = 0;
   for (size_t i = 0; i < image.size(); ++i) {
@@ -212,7 +212,7 @@ TEST(SlowMipChain, AFarCheckerboardNeitherAliasesNorBlurs) {
     const auto reference = seen(steep, false, 2048, 1);
     const auto few = seen(steep, true, 16, 2), fewPoints = seen(steep, false, 16, 2);
     const auto many = seen(steep, true, 1024, 3), manyPoints = seen(steep, false, 1024, 3);
-    // The error of unfiltered lookups is 0.065 and 0.099, that of filtered ones 0.032 and 0.005.
+    // The error of unfiltered lookups is 0.065 and 0.099, of filtered ones 0.032 and 0.005.
     EXPECT_LT(rmsDifference(few, reference),
               (steep ? 0.1 : 0.6) * rmsDifference(fewPoints, reference));
     EXPECT_LT(rmsDifference(many, reference), 1.1 * rmsDifference(manyPoints, reference));

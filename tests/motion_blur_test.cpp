@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motion blur: what an image with an open shutter shows is the mean over the shutter's time.
+// Motion blur: an image with an open shutter is the mean over the shutter's time.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ const json kShining = {{"emissiveFactor", {1, 1, 1}},
                        {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 0, 1}}}},
                        {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
 
-// What moves the square, or the view of it, by one metre along +X in one second.
+// The ways to move the square, or the view of it, by one metre along +X in one second.
 enum class Mover { Node, SharedNode, Morph, Skin, Camera };
 
 // A square of side 1 m with the radiance 1, from (-1, -0.5) to (0, 0.5) at time 0, before black; an
@@ -149,7 +149,7 @@ TEST(SlowMotionBlur, AFastSquareIsATrapezoid) {
   }
 }
 
-// Over black, the light that reaches the image does not change while what shines moves.
+// Over black, the light that reaches the image does not change while the source moves.
 TEST(SlowMotionBlur, KeepsTheEnergyOfAHighlight) {
   GltfWriter w;
   w.add("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 1}, {"roughnessFactor", 0}}}});
@@ -212,8 +212,8 @@ TEST(SlowMotionBlur, KeepsTheEnergyOfAHighlight) {
   EXPECT_LT(error, 0.02 * still) << "the test must be able to fail";
 }
 
-// An image of a time that is drawn anew in each of kTimes parts of the shutter's time: its
-// expectation is that of an open shutter, whatever moves.
+// The mean of images at a random time in each of kTimes parts of the shutter's interval: its
+// expectation equals an open shutter's, whatever moves.
 Image meanOfStills(const std::string& scene, double shutter, uint64_t seed, uint64_t samples,
                    ImageSize size) {
   constexpr int kTimes = 16;
@@ -489,7 +489,7 @@ TEST(MotionBlur, RefusesWhatHasNoMeaning) {
   refuses({"--frames", "0:1", "--probe-sequence", out / "p.#.exr", "--probe", "q.exr"}, "--probe");
 }
 
-// All probes that are needed, before the first frame; those of finished frames are not.
+// All probes that are needed are checked before the first frame; finished frames need none.
 TEST(MotionBlur, MissingProbesOfFramesAreFoundAtOnce) {
   const MovingSquare square(Mover::Camera);
   const TemporaryFolder out;

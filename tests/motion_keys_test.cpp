@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keys between which models, lamps and cameras move, and what is said where they do not follow.
+// The keys between which models, lamps and cameras move, and the warnings where they do not follow
+// the motion.
 #include <gtest/gtest.h>
 
 #include "front/plan_render.h"
@@ -24,7 +25,7 @@ class Animated : public GltfWriter {
     add("animations", json::object());
   }
 
-  // `values`: those at the start and at the end.
+  // `values`: the values at the start and at the end.
   void animate(int node, const char* path, const char* type, const std::vector<float>& values,
                const char* interpolation = "LINEAR") {
     json& animation = root["animations"][0];
@@ -149,7 +150,7 @@ TEST(MotionKeys, WarnsOfATurnOfTheCameraThatKeysDoNotShow) {
     EXPECT_TRUE(says(turned(degrees), "the camera ")) << degrees;
 }
 
-// The view with the option alone is that of a camera that turns.
+// With the option alone, the view is the same as for a turning camera.
 TEST(MotionKeys, AStepOfTheOrbitFramesAsTheOrbitDoes) {
   GltfWriter w;
   addTriangle(w);
@@ -191,7 +192,7 @@ TEST(MotionKeys, AMorphWithANormalMapKeepsItsVertices) {
   EXPECT_EQ(motion->keys.back().point(3), vec3(1, 0, 0));
 }
 
-// All that there is vanishes: the frame shows the probe.
+// Everything vanishes: the frame shows the probe.
 TEST(SlowMotionKeys, AFrameMayBeEmpty) {
   Animated w;
   const int node = addTriangle(w);

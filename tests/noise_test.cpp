@@ -339,8 +339,8 @@ double noiseRatioOfHighlight(double radius, double lights) {
   return squared / expected;
 }
 
-// A highlight counts with its own luminance, also where few samples make it up, and rare light
-// with that of its surroundings.
+// A highlight counts with its own luminance, also where few samples make it up, and rare light with
+// the luminance of its surroundings.
 TEST(SlowNoise, KnowsHighlightsFromRareLight) {
   for (const double radius : {1.5, 3.0, 6.0})
     for (const double lights : {4.0, 10.0}) {

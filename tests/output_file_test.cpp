@@ -91,7 +91,7 @@ TEST_F(SlowOutputFiles, RenderDoesNotOverwriteItsInputs) {
   std::ofstream(in("a.json")) << "old";
   fs::create_symlink(in("a.json"), in("b.exr"));
   expectErrorWithoutChanges(render(in("b.exr"), {"--stats", in("a.json")}), kOther);
-  // Likewise through links of which the last leads to no file yet.
+  // The same through links, the last of which leads to no file yet.
   fs::create_symlink("missing.exr", in("dangling.exr"));
   fs::create_symlink(in("dangling.exr"), in("chain.exr"));
   expectErrorWithoutChanges(render(in("missing.exr"), {"-o", in("chain.exr")}), kOther);
@@ -159,7 +159,8 @@ TEST_F(SlowOutputFiles, OtherCommandsDoNotOverwriteTheirInputs) {
                             kInput);
 }
 
-// The file at the end of the links is replaced, and they stay; what is no file is refused first.
+// The file at the end of the links is replaced, and they stay; anything that is no file is refused
+// first.
 TEST_F(SlowOutputFiles, LinksAreFollowedAndSpecialFilesRefused) {
   const auto render = [&](const std::string& output) {
     return Words{"render", in("scene.toml"), "--samples", "1", "--quiet", "-o", output};
@@ -189,8 +190,8 @@ TEST_F(SlowOutputFiles, LinksAreFollowedAndSpecialFilesRefused) {
   EXPECT_TRUE(fs::is_fifo(in("pipe.exr")));
 }
 
-// The folder of an output path in the scene file is created if its parent exists; that of --output
-// must exist.
+// The folder of an output path in the scene file is created if its parent exists; the folder of
+// --output must exist.
 TEST_F(SlowOutputFiles, TheOutputFolderOfASceneFileIsCreated) {
   const auto scene = [&](const std::string& output) {
     std::ofstream(in("plain.toml")) << "model = \"model.gltf\"\n[probe]\nfile = \"probe.exr\"\n"

@@ -21,7 +21,7 @@ namespace {
 constexpr int kWidth = 48, kHeight = 36;
 const Camera kCamera = Camera::lookAt({0, 1.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.8f);
 
-// A render without adaptation and guides, with which parts have the samples of the whole.
+// A render without adaptation and guides, so that parts have the samples of the whole.
 RenderSettings fixedSettings(uint32_t samples) {
   RenderSettings settings = smallRender(kWidth, kHeight, samples, 5);
   settings.adaptive = false;
@@ -112,7 +112,7 @@ TEST(Shard, UnionHasTheSamplesOfTheWhole) {
 }
 
 // All shards allot samples alike: a pixel has the same number in each, give or take the last of
-// each half, and none without; the first keeps those that all begin with.
+// each half, and none has no samples; the first keeps the samples that all begin with.
 TEST(SlowShard, LearnsFromTheSamplesOfAll) {
   const NamedScene small = threeScenes()[2];
   RenderSettings whole = smallRender(kWidth, kHeight, 400, 4);
@@ -139,7 +139,7 @@ TEST(SlowShard, LearnsFromTheSamplesOfAll) {
   }
 }
 
-// Before the samples of its own, a shard has nothing that can be merged.
+// Before its own samples, a shard has nothing that can be merged.
 TEST(Shard, StoppedAtItsBeginningSaysSo) {
   const NamedScene small = threeScenes()[0];
   RenderSettings whole = smallRender(kWidth, kHeight, 400, 4);
@@ -155,8 +155,8 @@ TEST(Shard, StoppedAtItsBeginningSaysSo) {
   }
 }
 
-// The variance of a union of adaptive shards is at most 10% above that of one render; the
-// differences to a reference of many images tell it to some percent.
+// The variance of a union of adaptive shards is at most 10% above one render's; the differences to
+// a reference of many images measure it to some percent.
 TEST(SlowShard, UnionOfAdaptiveShardsIsAsGoodAsOneRender) {
   const NamedScene small = threeScenes()[0];
   RenderSettings settings = smallRender(kWidth, kHeight, 128, 4);

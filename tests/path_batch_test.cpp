@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Paths that are traced together find what they find one at a time.
+// Paths that are traced together find the same as one at a time.
 #include "transport/integrator.h"
 
 #include <gtest/gtest.h>

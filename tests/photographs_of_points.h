@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras of known truth, and what they see of points: written out here, apart from the library.
+// Known cameras, and the points that they see: computed here, independently of the library.
 #pragma once
 
 #include <optional>

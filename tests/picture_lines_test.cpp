@@ -24,7 +24,7 @@ TEST(PictureLines, CoverTheirArea) {
   constexpr double kWidth = 1.2;  // of a picture this small
   for (const glm::dvec2 to : {glm::dvec2(120, 40), {40, 130}, {120, 133}, {121.3, 40.2}})
     EXPECT_NEAR(drawn({40, 40}, to), kWidth * glm::distance(glm::dvec2(40, 40), to), 4);
-  // Clipped at the border, of whatever length, and nothing outside.
+  // Lines of any length are clipped at the border, and nothing is drawn outside.
   EXPECT_NEAR(drawn({-1e9, 80}, {1e9, 80}), 200 * kWidth, 1);
   EXPECT_EQ(drawn({-50, -60}, {-5, 400}), 0);
   EXPECT_EQ(drawn({300, 10}, {900, 10}), 0);

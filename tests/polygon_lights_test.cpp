@@ -47,7 +47,7 @@ SphericalPolygon window(const PolygonCorners& corners = kWindow) {
   return polygonOf(corners, probe, "test");
 }
 
-// The sources' irradiance is Lambert's; with that of the remainder, it is the map's, up to the
+// The sources' irradiance is Lambert's; together with the remainder's, it is the map's, up to the
 // shape of the window: great circles through corners one texel outside of it.
 TEST(PolygonSource, KeepsEnergyAndIrradiance) {
   const Image map = roomWithWindow();
@@ -64,7 +64,8 @@ TEST(PolygonSource, KeepsEnergyAndIrradiance) {
   EXPECT_LT(maxComponent(extraction.remainder.rgb(150, 40)), 1.5f);  // as the rim
 }
 
-// Also around a pole, across the seam, and of one texel: as a test of every texel finds it.
+// Coverage agrees with a test of every texel, also around a pole, across the seam, and for one
+// texel.
 TEST(PolygonSource, CoversTexelsAnywhere) {
   const Image map = constantProbe({64, 32}, Rgb(1));
   for (const dvec3& axis : {dvec3(0, 1, 0), dvec3(0, -1, 0), dvec3(0.1, 1, 0.05), dvec3(0, 0, 1),
@@ -115,8 +116,8 @@ Image unevenRoom(float atBottom) {
   return map;
 }
 
-// What surfaces get that see all of what was taken is kept by a directional light, not by constant
-// radiance.
+// A directional light, but not constant radiance, keeps the irradiance of surfaces that see all of
+// the light taken.
 TEST(PolygonSource, UnevenLightHasItsOwnDirection) {
   const Image map = unevenRoom(30);
   const PolygonExtraction extraction = extractPolygons(map, {window()});

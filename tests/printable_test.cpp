@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What messages echo: names and values of hostile files.
+// Names and values of hostile files, as messages echo them.
 #include "base/text.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits of a probe; what clipping costs, and whether a probe has been clipped.
+// Edits of a probe; the light lost by clipping, and whether a probe has been clipped.
 #include "base/json.h"
 #include "json_file.h"
 #include "probe/edit.h"
@@ -78,7 +78,7 @@ TEST(ProbeEdit, AGainKeepsTheBitsOfTheRest) {
   EXPECT_EQ(multiplyRegion(probe, directionAt(0, 90), 0.1, Rgb(1)), 0u);
 }
 
-// As conventions.md: counter-clockwise seen from above, from -Z.
+// The convention: counter-clockwise seen from above, from -Z.
 TEST(ProbeEdit, AzimuthIsCounterClockwise) {
   EXPECT_LT(glm::distance(directionAt(0, 0), dvec3(0, 0, -1)), 1e-15);
   EXPECT_LT(glm::distance(directionAt(90, 0), dvec3(-1, 0, 0)), 1e-15);
@@ -135,7 +135,7 @@ TEST(Clipping, LostLightIsLostIrradiance) {
 TEST(Clipping, OfSyntheticProbes) {
   EXPECT_EQ(lostIfClippedAtWhite(constantProbe({8, 4}, Rgb(1e10f))), 0);
   EXPECT_EQ(lostIfClippedAtWhite(constantProbe({8, 4}, Rgb(0))), 0);
-  // All light in a texel of solid angle w: 4 pi/w times the mean, of which 1/0.18 is left.
+  // All light in a texel of solid angle w: 4 pi/w times the mean; 1/0.18 of the mean is left.
   const double share = texelSolidAngle(5, 64, 32) / (4 * kPiD);
   for (const float radiance : {1e-8f, 1e10f})
     EXPECT_NEAR(lostIfClippedAtWhite(spot(64, 32, 9, 5, radiance, 0)), 1 - share / 0.18, 1e-6);

@@ -41,7 +41,7 @@ TEST(ProbeFile, GivenMappingOverridesDetection) {
   EXPECT_THROW(loadProbe(folder / "p.exr", "sphere"), InputError);
 }
 
-// A mirror ball and an angular map look alike: a file of this program tells what it is.
+// A mirror ball and an angular map look alike: a file of this program states which it is.
 TEST(ProbeFile, ConvertedProbesNameTheirMapping) {
   const TemporaryFolder folder;
   const Image sky = gradientProbe({64, 32}, Rgb(1, 2, 3), {0.2, 0.3, 0.4});
@@ -58,14 +58,14 @@ TEST(ProbeFile, ConvertedProbesNameTheirMapping) {
       EXPECT_EQ(mappingName(probe.mapping), mapping);
       EXPECT_EQ(probe.reason, "the file names it");
     }
-  // Of other programs, or of another image.
+  // Mappings named by other programs, or for another image.
   for (const char* text : {"uv", "mirror-ball", ""}) {
     writeImage(folder / "other.exr", OutputImage{{{"", "RGB", sky}}, {{"mapping", text}}});
     EXPECT_EQ(loadProbe(folder / "other.exr").mapping, Mapping(Mapping::LatLong));
   }
 }
 
-// What has no place for the mapping is read with the one that shape and corners suggest.
+// A file without a place for the mapping is read with the one that shape and corners suggest.
 TEST(ProbeFile, ConvertWarnsOfALostMapping) {
   const TemporaryFolder folder;
   writeImage(folder / "sky.exr", gradientProbe({64, 32}, Rgb(0.1f, 0.2f, 0.3f), {0.2, 0.3, 0.4}));

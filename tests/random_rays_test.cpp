@@ -41,7 +41,7 @@ Image whiteSky(const ImageSize& size) {
 }
 
 // Under (1 + 2 cos) / 3 above black ground: E = 7 pi/9, and the integrals of L cos^2, L^2 cos and
-// L^2 cos^2 are 5 pi/9, 17 pi/27 and 64 pi/135; that of L is 4 pi/3.
+// L^2 cos^2 are 5 pi/9, 17 pi/27 and 64 pi/135; the integral of L is 4 pi/3.
 TEST(RandomRays, OvercastSky) {
   const RayVariance v = upward(overcastProbe({512, 256}, Rgb(1), 0));
   EXPECT_NEAR(v.irradiance, 7 * kPiD / 9, 1e-4);
@@ -60,7 +60,7 @@ TEST(RandomRays, WhiteSkyNeedsOneCosineSample) {
   EXPECT_EQ(raysForError(v.cosine, 0.001), 1);
 }
 
-// Also if the map is a single texel.
+// This holds also if the map is a single texel.
 TEST(RandomRays, ConstantProbe) {
   for (const ImageSize& size : {ImageSize{1, 1}, {2, 1}, {3, 7}, {64, 32}})
     for (const float radiance : {1e-8f, 1.f, 1e10f, 3e38f})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What readers and writers of images have to say reaches the user of every command.
+// The messages of readers and writers of images reach the user of every command.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -94,7 +94,7 @@ TEST_F(SlowReaderMessages, OfEveryCommandThatReadsAnImage) {
   }
 }
 
-// Of the primaries of a .hdr: the colour is converted, and the user told.
+// If a .hdr states primaries, the colour is converted and the user told.
 TEST_F(SlowReaderMessages, OfPrimaries) {
   std::string contents = fileContents(noted());
   const std::string field = "PRIMARIES=.708 .292 .170 .797 .131 .046 .3127 .329\n";
@@ -106,7 +106,7 @@ TEST_F(SlowReaderMessages, OfPrimaries) {
       << error;
 }
 
-// What a format cannot hold, wherever an image is written.
+// Warnings about data that a format cannot hold, wherever an image is written.
 TEST_F(SlowReaderMessages, OfLostLight) {
   Image negative(kSide, kSide, 3), uncovered(kSide, kSide, 4);
   for (float& texel : negative.texels) texel = 0.5f;

@@ -93,7 +93,7 @@ TEST(Reflectance, OfAFlatGroundRenderedAndExact) {
   expectNear(meanOf(exact.colors(), true), meanOf(rendered.colors(), true), 0.006f);
 }
 
-// What is unlit shows its base colour, and what emits reflects the rest of the plate.
+// An unlit surface shows its base colour, and an emitting one reflects the rest of the plate.
 TEST(Reflectance, OfUnlitAndEmittingGround) {
   const Rgb plate(0.3f, 0.2f, 0.15f), emission(0.1f, 0.05f, 0.02f);
   for (const bool unlit : {true, false}) {
@@ -222,8 +222,8 @@ TEST(SlowReflectance, OfAGlossyFloorExcludesItsHighlights) {
   expectNear(meanOf(projection.colors(), true), expected, 0.012f);
 }
 
-// What coats, sheen and transmission add to a plate, and what they keep from the base, is not the
-// base colour's. A local scene with all of them is lit as its plate shows it.
+// The light that coats, sheen and transmission add to a plate, or keep from the base, is not
+// attributed to the base colour. A local scene with all of them is lit as its plate shows it.
 TEST(SlowReflectance, OfLayeredFloorsIsThatOfTheirBase) {
   const Rgb expected(0.3f, 0.2f, 0.1f);
   ExtendedMaterial coat, sheen, sheet;

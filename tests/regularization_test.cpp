@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Path-space regularisation: it conserves energy, leaves what the camera sees directly as it is,
+// Path-space regularisation: it conserves energy, leaves directly visible surfaces as they are,
 // reduces variance, and its bias falls with the samples.
 #include "transport/path_settings.h"
 
@@ -64,7 +64,7 @@ TEST(Regularization, ConservesEnergy) {
   }
 }
 
-// The same bits where no path meets a glossy surface after a diffuse bounce.
+// The image keeps its bits where no path meets a glossy surface after a diffuse bounce.
 TEST(Regularization, LeavesOtherPathsAlone) {
   const Probe studio(studioProbe({64, 32}));
   Scene matte = ballOnFloor(lambert(Rgb(0.5f)), Rgb(0.6f));

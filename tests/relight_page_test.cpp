@@ -65,7 +65,7 @@ constexpr const char* kUse = R"(
   use();
 )";
 
-// Of the page's pixels: R, G, B, A of each, as text.
+// The page's pixels: R, G, B, A of each, as text.
 std::string bytesOf(const Image& image) {
   std::string text;
   for (const auto& [x, y] : {std::array{3, 4}, std::array{12, 9}, std::array{20, 20}})

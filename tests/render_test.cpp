@@ -194,7 +194,7 @@ TEST(Render, stopsAtTheNoiseLimit) {
   EXPECT_GE(r.samples, 16u);
 }
 
-// An estimate of what a limit leaves to do is too large where the render ends before.
+// An estimate of the work left under a limit is too large if the render ends earlier.
 TEST(Render, ProgressEndsAtOne) {
   const Scene scene = plane(lambert(Rgb(0.7f)));
   const Probe probe(gradientProbe({64, 32}, Rgb(1), {0.2, 0.6, 0.3}));

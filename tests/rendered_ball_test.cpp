@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mirror balls that the path tracer renders: what it photographs must return the probe that lit it,
-// and the reflectivity of the ball.
+// Mirror balls that the path tracer renders: its photographs must return the probe that lit the
+// ball, and the ball's reflectivity.
 #include <gtest/gtest.h>
 
 #include "capture_photographs.h"
@@ -63,7 +63,7 @@ TEST(SlowRenderedBall, ReturnsTheProbe) {
 }
 
 // HDRI book, figure 9.10: a card beside a ball, seen directly and in the ball. Both are lit by a
-// constant probe; the card is Lambertian and emits, so that it differs from what is around it.
+// constant probe; the card is Lambertian and emits, so that it differs from its surroundings.
 TEST(SlowRenderedBall, ReturnsItsReflectivity) {
   for (const Rgb& color : {kChrome, Rgb(0.59f)}) {
     Scene scene;
@@ -78,8 +78,8 @@ TEST(SlowRenderedBall, ReturnsItsReflectivity) {
     const Image image = renderScene(scene, camera, Probe(constantProbe({8, 4}, Rgb(0.5f))), "bsdf",
                                     smallRender(width, width, 64, 4))
                             .film.mean();
-    // The card spans 1 to 3 m left of the axis at 6 m from the camera: 9.5 to 26.6 degrees, of
-    // which the picture shows up to 14.3.
+    // The card spans 1 to 3 m left of the axis at 6 m from the camera: 9.5 to 26.6 degrees; the
+    // picture shows up to 14.3.
     const PatchMean direct = patchMean(image, {5, 150, 30, 20}, 1e4, "card");
     EXPECT_GT(direct.mean.x, 4);
     // In the ball: the direction (-2, 0, 6), at 18 degrees, is reflected at 9 degrees from the

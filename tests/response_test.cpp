@@ -31,8 +31,8 @@ double encodeShoulder(double exposure) {
   return std::pow(curve(1.5 * exposure) / curve(1.5), 1 / 2.2);
 }
 
-// How far, in levels, a solved curve is from the true one, at most, over the levels that carry
-// weight: the level of the exposure that it gives to a level. The scale is fixed at level 128.
+// The largest error of a solved curve, in levels, over the levels that carry weight: the level of
+// the exposure that it gives to a level. The scale is fixed at level 128.
 double largestError(const ResponseCurve& found, const Encoding& encode) {
   double low = 0, high = 1;  // the exposure of level 128, by bisection
   for (int i = 0; i < 60; ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders that stop between tiles and go on from what was stored.
+// Renders that stop between tiles and continue from the stored state.
 #include <gtest/gtest.h>
 
 #include "base/archive.h"
@@ -13,7 +13,7 @@ namespace {
 constexpr int kWidth = 48, kHeight = 36;
 const Camera kCamera = Camera::lookAt({0, 1.5f, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.8f);
 
-// Stores the state after some tiles, and stops the render there; goes on from another.
+// Stores the state after some tiles, and stops the render there; continues from another.
 class StopAfter : public RenderControl {
  public:
   StopAfter(int tiles, std::atomic<bool>& stop) : tiles_(tiles), stop_(stop) {}

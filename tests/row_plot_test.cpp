@@ -93,7 +93,7 @@ TEST(RowDistribution, ShowsTheTexelsOfTheRow) {
   }
 }
 
-// The cdf is that of the sampler's pdf along the middle of the row.
+// The cdf integrates the sampler's pdf along the middle of the row.
 TEST(RowDistribution, HasThePdfOfImportance) {
   const Image image = studioProbe({64, 32});
   const Probe probe(image);

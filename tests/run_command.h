@@ -26,7 +26,7 @@ struct CommandLimits {
   void apply() const;
 };
 
-// `status`: of waitpid().
+// `status`: from waitpid().
 CommandResult commandResult(int status, const std::string& outPath, const std::string& errorPath);
 
 // Starts the executable itself. If `signalAt` is not empty, sends `signal` as soon as standard
@@ -35,7 +35,7 @@ CommandResult runExecutable(const std::vector<std::string>& arguments,
                             const std::string& signalAt = "", int signal = SIGINT,
                             const CommandLimits& limits = {});
 
-// The same in the command server, which starts faster; what a file says of its command line is
+// The same in the command server, which starts faster; the command line that a file states is
 // wrong.
 CommandResult runCommand(const std::vector<std::string>& arguments);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes from memory: as sound as those from files, with errors that name what is wrong.
+// Scenes from memory: as sound as those from files, with errors that name the fault.
 #include "scene/builder/scene_builder.h"
 
 #include <gtest/gtest.h>

@@ -111,7 +111,7 @@ class SlowSanitize : public SlowScripts {
   CommandResult sanitize(const std::string& arguments) const {
     return shell("PATH=$PWD/bin:$PATH tools/scripts/sanitize.sh " + arguments);
   }
-  // With "N" for dates and commits.
+  // The record, with "N" for dates and commits.
   std::string recorded() const {
     const std::string text = fileContents(folder_ / "tests/sanitizers/passed.txt");
     return replaceMatches(text, "[0-9-]{10}|commit [0-9a-f]{12}", "N");

@@ -20,7 +20,7 @@ using Words = std::vector<std::string>;
 
 const std::string kProbe = std::string(kSourceDir) + "/probes/dusk.exr";
 
-// Two triangles, of which one moves by a metre per second along X, and one has a texture.
+// Two triangles: one moves by a metre per second along X, one has a texture.
 class Moving {
  public:
   GltfWriter w;
@@ -91,7 +91,7 @@ TEST(SlowSequence, FramesAreStills) {
   expectStills(model.scene("[camera]\nposition = [1, 1, 4]\nlook_at = [1, 0.5, 0]\n"), {}, alike);
 }
 
-// The coordinates of a scene that is far away are those of its own centre, which moves.
+// The coordinates of a scene that is far away are relative to its own centre, which moves.
 TEST(SlowSequence, FramesFarAwayAreStills) {
   const Moving model;
   const std::string path = (model.w.folder() / "far.toml").string();
@@ -176,7 +176,7 @@ TEST(Sequence, OneOfTheFrames) {
   EXPECT_EQ(texelsOf(out / "one.5.exr"), texelsOf(out / "all.5.exr"));
 }
 
-// An image that exists is a finished one; a checkpoint keeps what there is of the next.
+// An image that exists is a finished one; a checkpoint keeps the samples of the next.
 TEST(SlowSequence, SurvivesInterruption) {
   const Moving model;
   const TemporaryFolder out;
@@ -275,8 +275,9 @@ TEST(Sequence, BuildsNothingTwiceWhereTheProbeTurns) {
   EXPECT_EQ(built->builds(), 1);
 }
 
-// Two triangles of one mesh, of which one moves, and one that appears after a second: structures
-// over meshes are built once, and what does not move again when its indices change.
+// Two triangles of one mesh, one of them moving, and one that appears after a second: structures
+// over meshes are built once, and the structure of what does not move again when its indices
+// change.
 TEST(SlowSequence, BuildsInstancesOnce) {
   Moving model;
   GltfWriter& w = model.w;
@@ -369,7 +370,7 @@ TEST(Sequence, NamesFiles) {
   EXPECT_EQ(withNumber("a.exr", 3), "a.exr");
 }
 
-// The light of models that move is another one in each frame.
+// The light of moving models differs in each frame.
 TEST(Sequence, EachFrameMayHaveItsCache) {
   const Moving model;
   const TemporaryFolder out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// In which thread, in which order and how often a session calls back.
+// The thread, order and number of a session's callbacks.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -156,8 +156,8 @@ class SelfWatching : public RenderControl {
   LiveResult live_;
 };
 
-// The image that is brought up to date tile by tile is the one that is made of the whole at the
-// end; what was handed out does not change.
+// The image that is updated tile by tile equals the one made from the whole at the end; images
+// handed out do not change.
 TEST(SessionCallbacks, LiveImageIsThatOfTheWhole) {
   RenderDescription d = ballDescription(32);
   d.settings.crop = Crop{3, 2, 60, 35};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cancellation while a scene is prepared: how much work is done after it, and what remains. Time is
-// not measured here.
+// Cancellation while a scene is prepared: the amount of work done after it, and the state that
+// remains. Time is not measured here.
 #include <gtest/gtest.h>
 
 #include <mutex>

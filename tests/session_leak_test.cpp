@@ -90,8 +90,8 @@ TEST(SlowSession, AThousandLeaveNothingBehind) {
   EXPECT_LE(all.threads, half.threads);
   if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
   // Embree keeps some 210 bytes for each thread that has ever built a structure, and a session has
-  // a thread of its own. What is left is less than any part of one session takes: the probe's map
-  // has 98 kB.
+  // its own thread. The remaining memory is less than any part of one session takes: the probe's
+  // map has 98 kB.
   constexpr double kOfAThread = 256;
   EXPECT_LT(double(all.bytes) - double(half.bytes), 2e4 + kOfAThread * kCount / 2);
 }

@@ -102,8 +102,8 @@ TEST(Session, SnapshotsGrow) {
   EXPECT_EQ(session.wait().color().texels, freshRender(description));
 }
 
-// After any change the bits are those of a new session, and only what the change touches is done
-// again.
+// After any change the bits are the same as in a new session, and only what the change touches is
+// done again.
 TEST(Session, UpdateRedoesWhatDiffers) {
   const Stage stage;
   RenderDescription d = stageDescription(stage);
@@ -166,7 +166,8 @@ TEST(Session, UpdateRedoesWhatDiffers) {
   EXPECT_TRUE(change("material", [&] { d.scene = stage.scene(0.5f, Rgb(0.1f)); }).loadedScene);
 }
 
-// From a map in memory to a file and back: the files that were read are named in identities.
+// Changes from a map in memory to a file and back: the files that were read are named in
+// identities.
 TEST(Session, AProbesFileIsAmongTheFilesThatWereRead) {
   const TemporaryFolder folder;
   writeImage(folder / "sky.exr", sunnyMap());

@@ -76,7 +76,7 @@ TEST(ShadowCatcher, AlphaIsTheShareOfTheLightThatIsBlocked) {
     }
 }
 
-// A shadow of coloured light: alpha is that of the darkest channel; the colour has the rest.
+// A shadow of coloured light: alpha is the darkest channel's; the colour has the rest.
 TEST(ShadowCatcher, AShadowMayBeColoured) {
   const FloorAndObject scene({0, 0, 0, 1});
   const ImageFile file = scene.render(kBelow + twoSuns("[2, 1, 0]", "3"),
@@ -89,8 +89,8 @@ TEST(ShadowCatcher, AShadowMayBeColoured) {
     EXPECT_NEAR(color.at(5, 4)[c], albedo[c] / kPiD * (1.8 - darkest * lit[c]), 1e-3);
 }
 
-// Laid over the floor without the object, the image is the floor with it; also what the object
-// reflects onto the floor, and where it covers part of a pixel.
+// Laid over the floor without the object, the image is the floor with it; also the light that the
+// object reflects onto the floor, and where it covers part of a pixel.
 TEST(ShadowCatcher, OverTheLocalSceneItIsTheWholeScene) {
   const FloorAndObject scene({0.1, 0.3, 0.9, 1});
   writeImage(scene / "p.exr", gradientProbe({64, 32}, Rgb(0.4f, 0.5f, 0.7f), {0.2, 0.3, 0.9}));
@@ -122,8 +122,8 @@ TEST(ShadowCatcher, OverTheLocalSceneItIsTheWholeScene) {
             EXPECT_NEAR(color.at(x, y)[c], whole, 1e-5f * (1 + whole));
             EXPECT_EQ(kept, 0);
           }
-          // l_noobj is that of the whole pixel; beside an object it differs by the floor's gradient
-          // and by noise, at most a tenth of its radiance, 0.5.
+          // l_noobj is the whole pixel's; beside an object it differs by the floor's gradient and
+          // by noise, at most a tenth of its radiance, 0.5.
           const float sum = objects.rgb(x, y)[c] + (1 - own) * behind + difference.rgb(x, y)[c];
           EXPECT_NEAR(sum, whole, own > 0 && own < 1 ? 0.05f : 1e-5f * (1 + whole));
         }
@@ -172,7 +172,7 @@ TEST(ShadowCatcher, OverAPlateItIsTheCompositeOfTheRatio) {
     for (int x = 0; x < plate.width; ++x)
       for (int c = 0; c < 3; ++c) {
         const float* over = caught.at(x, y);
-        // Where the floor has another albedo per channel, the least ratio is that of all.
+        // Where the floor has another albedo per channel, all channels have the least ratio.
         EXPECT_NEAR(over[c] + (1 - over[3]) * plate.rgb(x, y)[c], composite.rgb(x, y)[c], 2e-3)
             << x << " " << y;
       }

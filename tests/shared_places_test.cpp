@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Emitting surfaces that lie where others lie: a lamp gives what is seen of it, however paths find
-// it.
+// Emitting surfaces that coincide with others: a lamp gives only its visible light, however paths
+// find it.
 #include <gtest/gtest.h>
 
 #include "probe/synth.h"
@@ -40,7 +40,7 @@ float render(const Scene& scene, const Camera& camera, Mis mis) {
   return meanColor(renderScene(scene, camera, black, "importance", settings).film.mean()).x;
 }
 
-// Seen straight from below, at its middle.
+// A view straight from below, at the square's middle.
 float seen(const Scene& scene) {
   return render(scene, Camera::lookAt({0, 0.1f, 0}, {0, 1, 0}, {0, 0, 1}, 0.1f), Mis::Balance);
 }
@@ -89,8 +89,8 @@ TEST(SharedPlaces, TwoLampsAtOnePlaceGiveTheLightOfOne) {
   expectAsSeen(moving, 1, "moving");
 }
 
-// Of two fronts the one that emits is met, of a front and a back the front, and an opaque surface
-// rather than a sheet.
+// Between two fronts the path meets the one that emits, between a front and a back the front, and
+// an opaque surface rather than a sheet.
 TEST(SharedPlaces, ALampGivesWhatIsSeenOfIt) {
   const Material dark = lambert(Rgb(0));
   Material darkOneSided = dark;
@@ -130,8 +130,8 @@ TEST(SharedPlaces, ALampUnderAFrostedSheetGivesNoInvalidSample) {
   EXPECT_NEAR(meanColor(result.film.mean()).x, 0.9f, 0.1f);
 }
 
-// In a coordinate plane, where coordinates are 0 but those of a node that was turned into it are
-// rounding errors.
+// The coordinates of a triangle in a coordinate plane are 0, but a node that was turned into it has
+// rounding errors instead.
 TEST(SharedPlaces, ALampInACoordinatePlaneIsFlushWithARoundedWall) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lampOf(Rgb(1))), {-1, 0, -1}, {2, 0, 0}, {0, 0, 2});
@@ -147,7 +147,7 @@ TEST(SharedPlaces, ALampInACoordinatePlaneIsFlushWithARoundedWall) {
     EXPECT_NEAR(render(scene, above, mis), kFormFactor, 0.012f) << int(mis);
 }
 
-// Triangles of a lamp that touch at edges, walls that cross it, and what is before or behind it do
+// Triangles of a lamp that touch at edges, walls that cross it, and surfaces before or behind it do
 // not share its place, at any scale.
 TEST(SharedPlaces, NeighboursDoNotShareAPlace) {
   for (const float scale : {1e-3f, 1.0f, 1e5f}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --show-lights: what the camera and mirrors see of the lights that replace a probe.
+// --show-lights: how the camera and mirrors see the lights that replace a probe.
 #include "lighting/delta_lights.h"
 
 #include <gtest/gtest.h>

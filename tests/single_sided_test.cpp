@@ -158,7 +158,7 @@ void writeProbe(const std::string& path, float radiance) {
   for (int i = 0; i < 6; ++i) file.write(reinterpret_cast<const char*>(&radiance), 4);
 }
 
-// What the command says about the model, or a scene file, under a constant probe.
+// The command's messages about the model, or a scene file, under a constant probe.
 std::string messagesOf(const std::string& file, float radiance,
                        const std::vector<std::string>& more = {}) {
   const TemporaryFolder folder;
@@ -233,7 +233,7 @@ TEST(SlowSingleSided, AnEmptyViewIsReported) {
   EXPECT_FALSE(contains(messagesOf(model, 1, {"--single-sided", "off"}), "in view"));
 }
 
-// What no camera would see is not the camera's fault.
+// The camera is not blamed if no camera would see anything.
 TEST(SlowSingleSided, SurfacesThatNeverShowAreReported) {
   const auto message = [](const json& material, const std::vector<float>& positions) {
     GltfWriter w;

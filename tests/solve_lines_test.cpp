@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras found from lines along the axes of the scene, and those of fSpy.
+// Cameras found from lines along the axes of the scene, and cameras read from fSpy.
 #include "scene/solve/solve_camera.h"
 
 #include <fmt/format.h>
@@ -148,7 +148,7 @@ TEST(SolveLines, RefusesWhatLeavesTheCameraOpen) {
                                {.height = 1, .origin = {}}, "L.csv"));
 }
 
-// What fSpy exports for a camera: rows of its transform, and so on.
+// fSpy's export for a camera: rows of its transform, and so on.
 std::string fspyJson(const SolvedCamera& c, const std::string& width = "1600") {
   const auto row = [&](int i) {
     return fmt::format("[{},{},{},{}]", c.axes[0][i], c.axes[1][i], c.axes[2][i], c.position[i]);

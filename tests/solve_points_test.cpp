@@ -108,7 +108,7 @@ TEST(SlowSolvePoints, StandardErrorsAreRight) {
   }
 }
 
-// What is given is not found, and has no error.
+// Given values are not solved for, and have no error.
 TEST(SolvePoints, AKnownFieldOfViewStays) {
   std::mt19937 random(2);
   const SolvedCamera truth = randomCamera(random, 0);

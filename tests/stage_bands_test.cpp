@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light stages in bands of rows are, bit for bit, those in one piece.
+// Light stages in bands of rows equal, bit for bit, stages in one piece.
 #include <gtest/gtest.h>
 
 #include "base/error.h"

@@ -94,7 +94,7 @@ class SlowStageMemory : public testing::Test {
     return all;
   }
 
-  // GB with which the stages of this test are rendered in bands of `rows` rows.
+  // The memory, in GB, for which the stages of this test are rendered in bands of `rows` rows.
   static double memoryFor(const std::string& directions, int width, double rows) {
     const DirectionBasis basis(directions, "test");
     return 1e-9 * (kProcessBytes + 1e6 + StageWriter::bufferBytes(basis, width) +

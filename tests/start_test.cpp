@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a start costs: the shared libraries that the command loads, and when it loads the module
+// The cost of a start: the shared libraries that the command loads, and when it loads the module
 // libchromeball_imageio.so.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -196,7 +196,7 @@ TEST_F(SlowStarved, AKillDuringTheWriteLeavesTheOldFile) {
     EXPECT_TRUE(WIFSIGNALED(status));
     EXPECT_EQ(fileContents(path), "old");
   }
-  // The next run takes what is left away.
+  // The next run removes leftovers.
   EXPECT_EQ(runCommand(words(path)).status, 0);
   EXPECT_EQ(out.files(), Words{"a.pfm"});
   EXPECT_EQ(readImage(path).width, 64);

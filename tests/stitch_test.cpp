@@ -77,7 +77,7 @@ TEST(SlowStitch, TilesOfAPlaceGiveItBack) {
   const std::vector<Tile> tiles = photographs(Probe(map), 300);
   const StitchedProbe stitched = stitch(tiles, std::vector<double>(tiles.size(), 1.0), {512, 256});
   EXPECT_LT(stitched.uncovered, 1e-9);
-  // What the photographs show: the interpolation of the map's texels.
+  // The content of the photographs: the interpolation of the map's texels.
   const Probe place(map);
   Image fine(2048, 1024, 3);
   for (int y = 0; y < fine.height; ++y)
@@ -88,7 +88,7 @@ TEST(SlowStitch, TilesOfAPlaceGiveItBack) {
              seen = exactIrradiance(stitched.latLong, normals);
   for (size_t i = 0; i < normals.size(); ++i)
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[i][k] / expected[i][k], 1, 1e-3);
-  const Image texels = resampled(fine, 512, 256);  // means, as those of the stitched probe
+  const Image texels = resampled(fine, 512, 256);  // means, like the stitched probe's
   std::vector<float> differences;
   for (int y = 0; y < texels.height; ++y)
     for (int x = 0; x < texels.width; ++x) {

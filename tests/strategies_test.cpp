@@ -37,7 +37,7 @@ std::vector<std::vector<double>> tileMeans(const NamedScene& named, const char* 
   return means;
 }
 
-// The table says of each strategy what it says of itself, of a probe that has a sun.
+// The table agrees with what each strategy says of itself, for a probe that has a sun.
 TEST(Strategies, TheTableKnowsWhichAreUnbiased) {
   Image map = constantProbe({128, 64}, Rgb(0.2f));
   map.setRgb(30, 20, Rgb(50'000));

@@ -65,8 +65,8 @@ std::vector<Part> removedParts(const Image& map, const Image& remainder) {
   return parts;
 }
 
-// Difference between the irradiance of suns plus remainder and that of the map, averaged over RGB:
-// the maximum over the normals, as a percentage of the map's mean irradiance.
+// Difference between the irradiance of suns plus remainder and the map's, averaged over RGB: the
+// maximum over the normals, as a percentage of the map's mean irradiance.
 double energyError(const Image& map, const SunExtraction& extraction) {
   // Parts are grouped by the nearest sun. If all or none of a group is above the horizon, its first
   // moment gives the irradiance.
@@ -259,8 +259,7 @@ TEST(SunExtraction, OneTexelOfAnyMap) {
 }
 
 // Elevations and irradiances measured by another program, from the notes stored with the data.
-// Directions are those of the brightest texel's centre; irradiances include the sky within two
-// degrees.
+// Directions point to the brightest texel's centre; irradiances include the sky within two degrees.
 TEST(SunExtraction, SunsOfRealProbes) {
   struct Known {
     const char* file;

@@ -26,7 +26,7 @@ DiffuseBall ballOf(double radius, double azimuth, double elevation) {
           .camera = {azimuth, elevation}};
 }
 
-// What the camera sees of the ball in the light of a probe.
+// The camera's picture of the ball in the light of a probe.
 Image photographOf(const DiffuseBall& ball, const Image& probe) {
   const int side = int(2 * ball.circle.radius) + 10;
   Image photograph(side, side, 3);
@@ -173,7 +173,7 @@ TEST(ClippedSun, IsTheMiddleOfTheLargestPlateau) {
 }
 
 struct Loop {
-  dvec3 truth;  // the irradiance of what is clipped, on a surface that faces it
+  dvec3 truth;  // the irradiance of the clipped light, on a surface that faces it
   SunFromBall found;
   ClippedSun direction;
 };

@@ -129,7 +129,7 @@ TEST(Suns, WithoutSunsEqualsImportance) {
 }
 
 // A straight edge at height h under a sun overhead casts a penumbra of width 2 h tan(angle / 2).
-// The visible fraction of the disc in it is that of a circle cut by a chord.
+// The visible fraction of the disc in it equals that of a circle cut by a chord.
 TEST(Suns, PenumbraOfAStraightEdge) {
   constexpr float kHeight = 2, kView = 1;  // metres; kView: width of the visible area
   constexpr int kWidth = 100;
@@ -176,7 +176,7 @@ TEST(Suns, IsUnbiasedOnlyWithoutSuns) {
   EXPECT_TRUE(Suns(overcast, true).unbiased());
 }
 
-// Full renders agree with those of `importance`.
+// Full renders agree with `importance`.
 TEST(SlowSuns, RenderAgreesWithImportance) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert({0.7f, 0.6f, 0.5f})), {-3, 0, 3}, {6, 0, 0},

@@ -69,8 +69,8 @@ TEST(SurfaceLayers, AmbientOcclusionBelowADisc) {
   }
 }
 
-// Half of the sky, and the mean direction (2/3, pi/3) in the plane of both normals; of constant
-// weight 45 degrees.
+// Half of the sky, and the mean direction (2/3, pi/3) in the plane of both normals; with constant
+// weight, 45 degrees.
 TEST(SurfaceLayers, AtTheFootOfAnInfiniteWall) {
   Scene scene;
   const int matte = addMaterial(scene, lambert(Rgb(0.5f)));

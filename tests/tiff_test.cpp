@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which image of a TIFF is read, how it is turned, and which files are refused.
+// The image of a TIFF that is read, its orientation, and the files that are refused.
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -32,7 +32,7 @@ TiffImage thumbnail(const std::vector<TiffEntry>& more = {{kNewSubfileType, 4, {
   return {2, 1, std::string(6, '\x7f'), 2, 3, 8, 1, 1, more};
 }
 
-// Of `samples` numbers of 16 bits.
+// A sensor image with `samples` numbers of 16 bits.
 TiffImage sensor(uint16_t photometric, uint16_t samples) {
   return {kWidth,      kHeight, std::string(size_t(kWidth * kHeight * samples * 2), 'x'),
           photometric, samples, 16};
@@ -111,7 +111,7 @@ TEST_F(Tiff, TheFirstFullImageIsRead) {
   refuse({mask}, "a transparency mask alone");
 }
 
-// The orientation is that of the image that is read.
+// The orientation belongs to the image that is read.
 TEST_F(Tiff, EachPageHasItsOrientation) {
   const TiffImage turned = rgb({{kOrientation, 3, {6}}});
   EXPECT_EQ(read({thumbnail(), turned}).image.texels, read({turned}).image.texels);
@@ -157,8 +157,8 @@ TEST_F(Tiff, TruncatedFilesAreRefused) {
   }
 }
 
-// What OpenImageIO returns black or as far as it goes: strips of compressions that libtiff was
-// built without (JPEG 2000, JPEG XL), and damaged ones.
+// Files that OpenImageIO returns black or in part: strips of compressions that libtiff was built
+// without (JPEG 2000, JPEG XL), and damaged ones.
 TEST_F(Tiff, TexelsThatCannotBeDecodedAreRefused) {
   constexpr uint16_t kLzw = 5, kAdobeDeflate = 8, kDeflate = 32946, kJpeg2000 = 34712,
                      kJpegXl = 50002;
@@ -184,7 +184,7 @@ std::string deflatedOf(const std::string& bytes) {
   return file;
 }
 
-// zlib's bound on what it makes of a strip is none on what others may.
+// zlib's bound on its own output for a strip does not bound other writers' output.
 TEST_F(Tiff, DeflateMayBeLongerThanItsTexels) {
   TiffImage deflated = rgb();
   deflated.compression = 8;
@@ -210,7 +210,7 @@ TEST_F(Tiff, DamagedDeflateIsRefused) {
       refuse({deflated(damaged, compression)}, "block 1 of its texels is damaged");
       refuse({thumbnail(), deflated(damaged, compression)}, "block 1 of its texels is damaged");
     }
-    // Flushed and never ended: without a checksum, not damaged.
+    // A stream that was flushed and never ended has no checksum, but is not damaged.
     std::string flushed = whole.substr(0, whole.size() - kChecksum);
     flushed[flushed.size() - kStored] = 0;  // not the last block
     for (const std::string& texels : {whole + "more", flushed})
@@ -331,7 +331,7 @@ TEST_F(Tiff, FilesTooShortForTheirTexelsAreRefused) {
     refuse({image}, "a.tif: cannot be read: the file is too short for 16384 x 8192 texels");
     refuse({thumbnail(), image}, "too short for 16384 x 8192 texels");
   }
-  // Black and white, of which a row takes a bit: 2^17 of 2^15 bits do not fit into 5 kB.
+  // Black and white; a row takes at least a bit: 2^17 rows of 2^15 bits do not fit into 5 kB.
   constexpr uint16_t kCcittFax4 = 4;
   refuse({{1 << 15, 1 << 17, std::string(5000, '\0'), 0, 1, 1, kCcittFax4}}, "too short for");
 }

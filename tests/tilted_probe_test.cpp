@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Probes under any rotation: what is seen, sampled and received from them turns with them.
+// Probes under any rotation: views, samples and irradiance turn with them.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -71,8 +71,8 @@ TEST(SlowTiltedProbe, ImportanceSamplesFollowThePdf) {
   }
 }
 
-// Few may differ: those that fall on another side of an edge by rounding. `samplesTurn`: so do the
-// samples; those within discs depend on the disc's own frame.
+// Few may differ: samples that rounding moves across an edge. `samplesTurn`: the samples turn too;
+// samples within discs depend on the disc's own frame.
 void expectTurned(const LightSource& level, const LightSource& tilted, const std::string& name,
                   bool samplesTurn = true) {
   SCOPED_TRACE(name);

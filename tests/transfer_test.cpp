@@ -25,7 +25,7 @@ struct Transferred {
     transfer = estimateTransfer(world, meshes, points, basis, settings, [](double) {});
   }
 
-  // By point, under the `keep` most important coefficients of a probe.
+  // The irradiance by point, under the `keep` most important coefficients of a probe.
   std::vector<dvec3> irradiance(const Image& probe, size_t keep = SIZE_MAX) const {
     std::vector<Rgb> light = basis.project(probe, {});
     keepMostImportant(basis, keep, light);
@@ -77,7 +77,7 @@ Scene convexBody() {
 }
 
 // The white surface's throughput is 1 for every sample of the cosine, so value k is the mean of
-// Y_k: its variance is that of Y_k under cos / pi, below 1, over the number of samples.
+// Y_k: its variance is the variance of Y_k under cos / pi, below 1, over the number of samples.
 TEST(Transfer, OpenVerticesHaveTheHarmonicsOfTheCosine) {
   const Scene scene = convexBody();
   const Transferred t(scene, "sh:2", {.samples = 4096, .maxDepth = 1});
@@ -118,7 +118,7 @@ TEST(SlowTransfer, MoreFunctionsComeCloserToTheExactIrradiance) {
 }
 
 // Shadows, and light that surfaces reflect to each other. The gradient is of the first band alone,
-// so harmonics have no error but that of the samples; the lamp of the same scene is not.
+// so harmonics have no error but the samples'; the light of the scene's lamp is not.
 TEST(SlowTransfer, ShadowedVerticesAreThoseOfABake) {
   const NamedScene scene = threeScenes()[0];
   const Transferred sh(scene.scene, "sh:4", {.samples = 2048, .maxDepth = 4});

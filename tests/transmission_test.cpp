@@ -83,7 +83,7 @@ Rgb radianceAt(const Scene& scene, double sine, int samples) {
           .film.mean());
 }
 
-// At normal and oblique incidence.
+// Tested at normal and oblique incidence.
 TEST(Transmission, aSlabAbsorbsByBeersLaw) {
   constexpr float kThickness = 0.5f;
   const Rgb attenuation(0.3f, 1, 3);

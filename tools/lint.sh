@@ -41,7 +41,7 @@ if [[ -n $(missing) ]]; then
   [[ -z $(missing) ]] || fail "cannot run without $(missing | xargs)"
 fi
 
-# Without Git (an unpacked archive): all but generated folders.
+# The files to check; without Git (an unpacked archive), all but generated folders.
 hasGit() { git rev-parse --git-dir >/dev/null 2>&1; }
 sources() {
   if hasGit; then
@@ -61,7 +61,7 @@ printf '%s\0' "${files[@]}" | xargs -0 -n 50 -P "$(nproc)" clang-format-14 --dry
   fail "the format differs from .clang-format; run tools/lint.sh --fix"
 ((tidy)) || exit 0
 
-# Without the history, of which a shallow clone has too little, nobody knows what has changed.
+# Without the history, and with a shallow clone's part of it, changes are unknown.
 wasAll=$all
 [[ $(git rev-parse --is-shallow-repository 2>/dev/null) == false ]] || all=1
 # Configured only, without precompiled headers, since GCC's are of no use to clang-tidy.

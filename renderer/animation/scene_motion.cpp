@@ -21,7 +21,7 @@ bool areEqual(const std::vector<Key>& keys) {
   return std::ranges::all_of(keys, [&](const Key& key) { return key == keys.front(); });
 }
 
-// The keys of parts and lamps of a scene, the first those of the scene itself.
+// The keys of parts and lamps of a scene, the first ones from the scene itself.
 struct Keys {
   std::vector<InstanceMotion> instances;
   std::vector<std::vector<LampPose>> lamps;
@@ -32,7 +32,8 @@ struct Keys {
     for (const PunctualLight& lamp : scene.lights) lamps.push_back({lamp.poseAt(0)});
   }
 
-  // Those at a later time. What the scene lacks then keeps its last, and its node is `incomplete`.
+  // Adds the keys at a later time. Parts that the scene lacks then keep their last key, and their
+  // node is `incomplete`.
   void add(const Scene& scene, const Scene& then, std::set<int>& incomplete) {
     const auto parts = partsIn(then, scene);
     for (size_t i = 0; i < parts.size(); ++i) {

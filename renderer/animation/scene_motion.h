@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a scene at several times to its motion.
+// Derives motion from a scene at several times.
 #pragma once
 
 #include <string>
@@ -10,39 +10,39 @@
 namespace chromeball {
 
 // Gives the instances and lamps of `scene`, which is at the opening of the shutter, the places and
-// shapes that they have in `later`, at equally spaced times up to its closing. What one of `later`
-// lacks stays there as it was before. Returns the names of the nodes with parts or lamps that
+// shapes that they have in `later`, at equally spaced times up to its closing. Parts that one of
+// `later` lacks stay as they were before. Returns the names of the nodes with parts or lamps that
 // `scene` or one of `later` lacks.
 std::vector<std::string> addMotion(Scene& scene, const std::vector<Scene>& later);
 
 // The same parts and lamps in scenes of the same models at several times.
 
-// By instance of `scene`, the same part in `other`; null if the node has other parts there, or ones
-// that are turned inside out.
+// For each instance of `scene`, the same part in `other`; null if the node has other parts there,
+// or ones that are turned inside out.
 std::vector<const Instance*> partsIn(const Scene& other, const Scene& scene);
 
-// By lamp of `scene`, that of the same node in `other`; null if there is none.
+// For each lamp of `scene`, the lamp of the same node in `other`; null if there is none.
 std::vector<const PunctualLight*> lampsIn(const Scene& other, const Scene& scene);
 
 // How well keys follow the motion that they are taken from.
 
 class MotionError {
  public:
-  // Compares what moves in `scene` at `time` with the scene as it is `then`.
+  // Compares the moving parts of `scene` at `time` with `then`, the scene at that time.
   void add(const Scene& scene, const Scene& then, float time);
   void add(const Camera& camera, const Camera& then, float time);
 
-  // The camera turns so far at constant speed while the shutter is open: from half a turn between
-  // two keys on, these do not show its direction.
+  // The camera turns by this angle at constant speed while the shutter is open; keys half a turn or
+  // more apart would not show its direction.
   void addTurn(double degrees, int steps);
 
   // A line for each of models, lamps and camera that misses its way by more than 0.5% of it.
   std::vector<std::string> warnings(const std::string& file, int steps) const;
 
  private:
-  // The largest that were found, in metres or degrees.
+  // The largest errors that were found, in metres or degrees.
   struct Way {
-    double length = 0;  // from what there is at the opening
+    double length = 0;  // of the motion, from the opening on
     double miss = 0;    // beyond rounding errors
 
     void addPlaces(const vec3& opening, const vec3& moved, const vec3& truth);

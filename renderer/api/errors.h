@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exceptions that all functions throw: InputError for what they are given, RunError for
-// failures while they run, Interrupted.
+// The exceptions that all functions throw: InputError for invalid input, RunError for failures
+// while they run, Interrupted.
 #pragma once
 
 #include "base/error.h"

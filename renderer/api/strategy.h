@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The interface of lighting strategies: directions towards the light, with their pdfs over solid
-// angle. A program's own one is LightingDescription::make.
+// angle. A program sets its own strategy by LightingDescription::make.
 #pragma once
 
 #include "lighting/light_source.h"

@@ -57,7 +57,7 @@ constexpr int kCoarsest = 64, kFinest = 4;  // pixels between points of the firs
 constexpr float kLeastReach = 3;            // of records, in pixels
 constexpr size_t kLargestGroup = 64;        // of points that are tried together
 
-// A point that needs the irradiance on one side of a surface.
+// A point where the irradiance on one side of a surface is needed.
 struct CachePoint {
   glm::uvec2 pixel;
   uint64_t lobe;  // of the pixel
@@ -81,7 +81,7 @@ class CacheFiller {
           return PathContext{.sampler = PixelSampler(table_, seed), .clamp = Clamp(std::nullopt)};
         }) {}
 
-  // The points of the pass with that spacing which earlier passes have not had, in scanline order.
+  // The points of the pass with that spacing that earlier passes have not had, in scanline order.
   std::vector<CachePoint> pointsOf(int spacing) {
     const int rows = (size_.y + spacing - 1) / spacing;
     std::vector<std::vector<CachePoint>> found(static_cast<size_t>(rows));
@@ -157,7 +157,7 @@ class CacheFiller {
     if (!record) return {};
     record->leastRadius = leastRadius(point);
     if (record->radius < record->leastRadius) {
-      // As it changes less over the distances that the image shows.
+      // The irradiance changes less over the distances that the image shows.
       for (vec3& gradient : record->translation) gradient *= record->radius / record->leastRadius;
       record->radius = record->leastRadius;
     }

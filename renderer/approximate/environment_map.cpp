@@ -14,7 +14,7 @@
 namespace chromeball {
 namespace {
 
-// alpha = roughness^2 doubles from each to the next.
+// alpha = roughness^2 doubles from step to step.
 constexpr std::array kLadder = {PrefilteredProbe::kLeastRoughness, 0.28f, 0.4f, 0.57f, 0.8f};
 constexpr float kGreatest = 0.98f;  // beyond, the diffuse map is as good
 
@@ -80,8 +80,8 @@ PathSettings withoutMis(PathSettings settings) {
   return settings;
 }
 
-// A direction in which microfacets reflect what is seen along wo; their normals are around the
-// bisector of wo and the middle of the lobe.
+// A direction whose light microfacets reflect along wo; their normals are around the bisector of wo
+// and the middle of the lobe.
 vec3 reflectedBy(const MapLobe& lobe, const vec3& wo, vec2 u) {
   const float alpha = lobe.roughness * lobe.roughness;
   if (alpha < ggx::kSmoothAlpha) return lobe.direction;
@@ -136,8 +136,8 @@ Rgb EnvironmentMapIntegrator::ofSources(const Point& point, PathContext& context
   return sum;
 }
 
-// Of the sources that light samples do not find: for a smooth lobe, all that is seen; else the
-// light that no light sample has a pdf for, which is the same from all directions
+// The radiance of sources that light samples do not find: for a smooth lobe, of all that it sees;
+// else the light that no light sample has a pdf for, which is the same from all directions
 // (scene_sources.h).
 Rgb EnvironmentMapIntegrator::unsampled(const Point& point, const MapLobe& lobe) const {
   const bool isSmooth = !lobe.isDiffuse && lobe.roughness == 0;

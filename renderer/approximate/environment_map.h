@@ -39,8 +39,8 @@ class EnvironmentLight {
 };
 
 // At the first surface: emission; the light of lamps, emitting surfaces and suns, by light samples
-// with shadows, except that smooth lobes look suns up like the probe, as all lobes do ambient
-// light; and of the probe, lobe by lobe (shading/bsdf_sample.h),
+// with shadows, except that smooth lobes look suns up like the probe, as all lobes do with ambient
+// light; and the probe's light, lobe by lobe (shading/bsdf_sample.h),
 //   diffuse   albedo / pi E(n)
 //   specular  albedo L'(R, roughness), R the mirror direction, or L in a direction that GGX
 //             microfacets reflect if the lobe is narrow (PrefilteredProbe::kLeastRoughness); of
@@ -48,11 +48,11 @@ class EnvironmentLight {
 // Light that other surfaces reflect is missing. Without occlusion geometry blocks nothing, so that
 // only convex objects are right; then a ray is traced from the camera alone, unless there are
 // lamps. With ambient occlusion, a cosine-distributed ray decides on the diffuse light; with
-// reflection occlusion, one that GGX microfacets reflect on that of each specular lobe. Transmitted
-// light is never blocked.
+// reflection occlusion, one that GGX microfacets reflect on the light of each specular lobe.
+// Transmitted light is never blocked.
 class EnvironmentMapIntegrator : public Integrator {
  public:
-  // All arguments must outlive this. `lighting`: what the camera sees behind the scene.
+  // All arguments must outlive this. `lighting`: gives what the camera sees behind the scene.
   EnvironmentMapIntegrator(const World& world, const LightSource& lighting,
                            const EnvironmentLight& environment, const PathSettings& settings,
                            const Occlusion& occlusion);

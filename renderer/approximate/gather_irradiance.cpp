@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-// What is seen in one stratum.
+// What one stratum sees.
 struct Seen {
   Rgb radiance{0};            // reflected
   float distance = INFINITY;  // metres
@@ -38,7 +38,7 @@ class Hemisphere {
   std::vector<Seen> seen_;
 };
 
-// Unit, for a point of [0, 1]^2: density cos / pi.
+// A unit direction for a point of [0, 1]^2, with density cos / pi.
 vec3 cosineDirection(const Frame& frame, vec2 u) {
   const float sine = std::sqrt(u.x), cosine = std::sqrt(std::max(1 - u.x, 0.0f));
   const float phi = 2 * kPi * u.y;
@@ -48,11 +48,11 @@ vec3 cosineDirection(const Frame& frame, vec2 u) {
 // Follows paths from a point that receives light, without what sourcesAlone() finds there.
 class GatheredPath {
  public:
-  // Both tracers must outlive this.
+  // Both tracers must outlive this object.
   GatheredPath(const PathTracer& tracer, const PathTracer& sources)
       : tracer_(tracer), sources_(sources) {}
 
-  // `hit`: of the state's ray, the first one from the point.
+  // `hit`: the first one from the point, along the state's ray.
   Rgb follow(PathState state, std::optional<Hit> hit, PathContext& context) const {
     const vec3 start = state.from.position;
     while (hit) {
@@ -60,7 +60,7 @@ class GatheredPath {
       if (!tracer_.vertex(state, hit, context)) return state.radiance;
       context.sampler.startVertex(state.depth);
       hit = tracer_.nextHit(state, context);
-      // Only smooth glass and what the path has passed straight is between it and the point.
+      // Nothing is between the path and the point but smooth glass and surfaces passed straight.
       const bool isClear = state.isDelta || state.from.position == start;
       if (!isClear || state.bounces() != 1) return tracer_.follow(state, hit, context);
     }
@@ -68,7 +68,7 @@ class GatheredPath {
   }
 
  private:
-  // What the vertex adds to the path as the light of a source.
+  // The light of a source that the vertex adds to the path.
   Rgb emissionAt(PathState state, const Hit& hit, PathContext& context) const {
     const Scene& scene = tracer_.world().scene;
     const auto met = tracer_.metAt(state, hit, context);
@@ -149,7 +149,7 @@ IrradianceRecord integrate(Hemisphere& seen, const HemisphereStrata& strata, con
   return record;
 }
 
-// Where the irradiance changes faster than the distances tell (Krivanek et al. 2006).
+// The radius where the irradiance changes faster than the distances suggest (Krivanek et al. 2006).
 float radiusOfGradient(const IrradianceRecord& record) {
   const auto& t = record.translation;
   const glm::dvec3 gradient = 0.2126f * t[0] + 0.7152f * t[1] + 0.0722f * t[2];

@@ -73,7 +73,7 @@ void IrradianceCache::add(IrradianceRecord record) {
   index(uint32_t(records_.size() - 1));
 }
 
-// Over all records: that takes little time beside their rays.
+// Goes over all records: that takes little time compared with their rays.
 template <class Use>
 void IrradianceCache::forNear(const IrradianceRecord& record, Use use) {
   constexpr float kOpposite = -0.5f;  // the other side of a wall has other neighbours

@@ -62,21 +62,21 @@ class IrradianceCache {
   size_t size() const { return records_.size(); }
   const std::vector<IrradianceRecord>& records() const { return records_; }
 
-  // The weighted mean of what the records say of a point; nullopt where none may be used. A
+  // The weighted mean of the records' irradiances at a point; nullopt if none may be used. A
   // record's weight falls to 0 where its expected error reaches the limit, so that the result is
   // continuous.
   std::optional<Rgb> find(const vec3& position, const vec3& normal) const;
 
-  // The least distance, in metres, at which the usable records suppose something to be seen from
+  // The least distance, in metres, at which the usable records expect a surface to be seen from
   // there: the smallest radius less the distance; nullopt where none may be used.
   std::optional<float> claimedRadius(const vec3& position, const vec3& normal) const;
 
-  // Adds a record. Of two that are close to each other, neither may have a radius above the other's
-  // plus their distance: what is near to one is near to the other too (Krivanek, Bouatouch,
-  // Pattanaik and Zara 2006, "Making Radiance and Irradiance Caching Practical").
+  // Adds a record. The radius of a record must not exceed a neighbour's radius plus their distance:
+  // what is near to one is near to the other too (Krivanek, Bouatouch, Pattanaik and Zara 2006,
+  // "Making Radiance and Irradiance Caching Practical").
   void add(IrradianceRecord record);
 
-  // The records alone.
+  // The records, without the grids.
   void archive(Archive& a);
 
  private:

@@ -20,7 +20,7 @@ struct World;
 struct Occlusion {
   bool ambient = false;       // diffuse
   bool reflection = false;    // specular and transmitted
-  float distance = INFINITY;  // of what blocks diffuse light, metres
+  float distance = INFINITY;  // within which surfaces block diffuse light, metres
   bool uniformBent = false;   // bent normals are unweighted means (HDRI book, section 9.8.2)
 };
 
@@ -30,21 +30,21 @@ struct SkyRay {
   Rgb transmittance;
 };
 
-// Of density cos / pi around `normal`; nothing passes below the geometry. A ray that is not blocked
-// within `distance` metres sees the sky. Uses the random numbers of light samples.
+// A sky ray with density cos / pi around `normal`; nothing passes below the geometry. A ray that is
+// not blocked within `distance` metres sees the sky. Uses the random numbers of light samples.
 SkyRay cosineSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
                     RayMask visible, PathContext& context);
 
-// Of constant density over the hemisphere.
+// A sky ray with constant density over the hemisphere.
 SkyRay uniformSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
                      RayMask visible, PathContext& context);
 
 // Layers that need rays of their own at the first surface: ambient occlusion, bent normals (HDRI
 // book, section 9.8.2) and irradiance (figure 9.38c).
 
-// Another integrator, which also fills these layers of FirstHit, one ray or path each a sample. The
-// picture, its estimate of the light beyond the limits of depth, and what guides learn from it are
-// those without them.
+// Another integrator, which also fills these layers of FirstHit, one ray or path each a sample.
+// The layers change neither the picture, nor its estimate of the light beyond depth limits, nor
+// what guides learn.
 //   ambientOcclusion  an estimate of 1 / pi integral of V cos, V the visibility of the sky
 //   unoccluded        of the vector integral of V cos (or of V) times the direction
 //   irradiance        pi times the radiance of a white Lambertian surface in the place of the first

@@ -44,7 +44,7 @@ std::optional<Atlas> packAtlas(const std::vector<Chart>& charts, int size, int p
   std::iota(order.begin(), order.end(), size_t(0));
   std::ranges::stable_sort(
       order, [&](size_t a, size_t b) { return atlas.places[a].height > atlas.places[b].height; });
-  int x = 0, y = 0, row = 0;  // row: its height, that of its first chart
+  int x = 0, y = 0, row = 0;  // row: its height, the first chart's
   for (const size_t i : order) {
     AtlasPlace& place = atlas.places[i];
     if (x + place.width > size) x = 0, y += row, row = 0;

@@ -20,22 +20,23 @@ inline constexpr const char* kBakedLightNames[] = {"irradiance", "ambient-occlus
 
 class PointLight {
  public:
-  // The tracer must outlive this. `distance`: what is farther away does not occlude, metres.
+  // The tracer must outlive this. `distance`: surfaces farther away do not occlude, metres.
   PointLight(const PathTracer& tracer, BakedLight what, float distance)
       : tracer_(tracer), what_(what), distance_(distance) {}
 
   BakedLight what() const { return what_; }
   const Scene& scene() const { return tracer_.world().scene; }
 
-  // The front of the surface; with the interpolated normal, for radiance with that of the material.
+  // The front of the surface with the interpolated normal; for radiance, with the material's
+  // normal.
   Surface surfaceAt(const BakePoint& point) const;
 
   // One sample; uses the random numbers of a path.
   Rgb sample(const BakePoint& point, const Surface& surface, PathContext& context) const;
 
   // Whether the point is inside a body: most rays from it first hit the back of a closed surface,
-  // or that of any surface nearer than a texel. Glass and blended surfaces are not counted. Uses
-  // samples of the current pixel.
+  // or of any surface nearer than a texel. Glass and blended surfaces are not counted. Uses samples
+  // of the current pixel.
   bool isBuried(const BakePoint& point, const Surface& surface,
                 const std::vector<PlacedMesh>& meshes, PathContext& context) const;
 
@@ -68,7 +69,7 @@ struct BakeResult {
   RayCounts rays;
 };
 
-// `meshes`: of all instances of the world. The result depends on points, samples and seed only.
+// `meshes`: all instances of the world. The result depends on points, samples and seed only.
 BakeResult bake(const World& world, const LightSource& lighting,
                 const std::vector<PlacedMesh>& meshes, const std::vector<BakePoint>& points,
                 const BakeSettings& settings, const Progress& progress);
@@ -78,8 +79,8 @@ BakeResult bake(const World& world, const LightSource& lighting,
 // its grey. The base colour is the mean over the point's extent.
 vec4 shownColor(const PointLight& light, const BakePoint& point, const Rgb& baked);
 
-// Whether the colours of an instance count for the scale of the file: those of surfaces that emit
-// do not, so that lamps do not darken the rest.
+// Whether the colours of an instance count for the scale of the file: emitting surfaces do not, so
+// that lamps do not darken the rest.
 bool countsForScale(const Scene& scene, int instance);
 
 // The smallest power of two, from 1 up, that no channel exceeds.

@@ -6,7 +6,7 @@
 namespace chromeball {
 namespace {
 
-// All three weights at least `least`.
+// Raises all three weights to at least `least`.
 vec2 offTheEdges(const vec2& barycentric, float least) {
   const vec3 weights =
       glm::max(vec3(1 - barycentric.x - barycentric.y, barycentric.x, barycentric.y), least);

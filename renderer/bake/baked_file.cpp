@@ -97,7 +97,7 @@ class Writer {
     return attributes;
   }
 
-  // glTF demands unit normals; those of a degenerate vertex become any.
+  // glTF demands unit normals; a degenerate vertex gets an arbitrary one.
   void addNormals(const BakedGeometry& geometry, Json& attributes) {
     std::vector<vec3> normals = gathered(geometry.placed->shadingNormals, geometry.vertices);
     for (vec3& n : normals)
@@ -105,7 +105,7 @@ class Writer {
     attributes["NORMAL"] = document_.accessor(normals);
   }
 
-  // Sets that the mesh lacks, but that glTF wants before others, are those of the lightmap or 0.
+  // UV sets that the mesh lacks, but that glTF requires before others, are the lightmap's or 0.
   void addUvs(const BakedGeometry& geometry, Json& attributes) {
     std::vector<int> sets;
     const auto zeros = [&] {
@@ -123,7 +123,8 @@ class Writer {
     for (size_t i = 0; i < sets.size(); ++i) attributes[fmt::format("TEXCOORD_{}", i)] = sets[i];
   }
 
-  // By the lightmap or the colours of vertices alone, without textures of the model.
+  // Whether the lightmap or the colours of vertices alone show the light, without textures of the
+  // model.
   bool isShownWhole(const BakedGeometry& geometry) const {
     if (file_.look != BakedLook::Unlit) return false;
     const Instance& instance = scene_.instances[size_t(geometry.placed->instance)];

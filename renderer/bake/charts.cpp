@@ -117,9 +117,9 @@ void FlatTriangleSet::add(const FlatTriangle& t) {
 
 namespace {
 
-// Of a triangle's normal to that of the first one: the projection shrinks no direction to less than
-// 0.77. Of shading normals on both sides of an edge: more is a crease, which light does not cross
-// smoothly.
+// Largest angles. kChartAngle: between a triangle's normal and the first triangle's, so that the
+// projection shrinks no direction to less than 0.77. kCreaseAngle: between the shading normals on
+// both sides of an edge; more is a crease, which light does not cross smoothly.
 constexpr double kChartAngle = 40, kCreaseAngle = 20;  // degrees
 const double kChartCosine = std::cos(kChartAngle * kPiD / 180);
 const double kCreaseCosine = std::cos(kCreaseAngle * kPiD / 180);

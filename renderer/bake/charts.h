@@ -12,7 +12,7 @@
 
 namespace chromeball {
 
-// Triangles of a plane: distance, overlap, and a set of which none overlaps another.
+// Triangles of a plane: distance, overlap, and a set of triangles that do not overlap.
 
 using FlatTriangle = std::array<glm::dvec2, 3>;
 

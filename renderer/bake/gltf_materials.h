@@ -16,7 +16,7 @@ class GltfMaterials {
  public:
   using Json = GltfDocument::Json;
 
-  // Both must outlive this. `movesSets`: the file has a lightmap's UV set.
+  // Both arguments must outlive this. `movesSets`: the file has a lightmap's UV set.
   GltfMaterials(const Scene& scene, GltfDocument& document, bool movesSets)
       : scene_(scene), document_(document), movesSets_(movesSets) {}
 

@@ -110,7 +110,7 @@ class TexelFilter {
     return i >= 0 && points_[size_t(i)].chart == p.chart ? i : -1;
   }
 
-  // Of a half: the mean of the squared differences of the halves, / 2.
+  // The variance of a half: the mean of the squared differences of the halves, / 2.
   Rgb varianceAround(size_t i) const {
     Rgb sum(0);
     int count = 0;
@@ -148,7 +148,7 @@ class TexelFilter {
   const std::vector<BakePoint>& points_;
   const BakeResult& baked_;
   int size_;
-  std::vector<int> index_;      // by texel: of its point, or -1
+  std::vector<int> index_;      // by texel: its point's index, or -1
   std::vector<Rgb> variances_;  // by point, of one half
 };
 

@@ -8,7 +8,7 @@
 namespace chromeball {
 namespace {
 
-// By vertex: the first one at the same position.
+// For each vertex, the first one at the same position.
 std::vector<uint32_t> welded(const std::vector<glm::dvec3>& positions) {
   std::vector<uint32_t> order(positions.size()), first(positions.size());
   std::iota(order.begin(), order.end(), 0u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangles of an instance at their places in the scene, and which of them share edges.
+// The triangles of an instance at their places in the scene, and their shared edges.
 #pragma once
 
 #include <array>
@@ -22,10 +22,10 @@ struct PlacedMesh {
   std::vector<vec3> shadingNormals;  // by vertex, unit; empty: flat
   std::vector<glm::dvec3> normals;   // by triangle, unit, on the front; 0 for one without an area
   std::vector<double> areas;         // by triangle, m^2
-  // By triangle: those beyond the edges 0-1, 1-2 and 2-0. Vertices at the same position count as
-  // one; an edge of three triangles or more joins none.
+  // For each triangle, the triangles beyond its edges 0-1, 1-2 and 2-0. Vertices at the same
+  // position count as one; an edge of three triangles or more joins none.
   std::vector<std::array<uint32_t, 3>> neighbours;
-  // By triangle: whether it is part of a closed surface, whose back only the inside sees.
+  // For each triangle, whether it is part of a closed surface, whose back only the inside sees.
   std::vector<uint8_t> isClosed;
 
   // `scene` must outlive this.
@@ -34,7 +34,7 @@ struct PlacedMesh {
   const Triangle& triangle(uint32_t i) const { return mesh->triangles[i]; }
   size_t triangleCount() const { return mesh->triangles.size(); }
   bool hasArea(uint32_t i) const { return areas[i] > 0; }
-  // At a corner of a triangle, 0 to 2.
+  // The shading normal at a corner of a triangle, 0 to 2.
   glm::dvec3 shadingNormal(uint32_t i, int corner) const {
     return shadingNormals.empty() ? normals[i] : glm::dvec3(shadingNormals[triangle(i)[corner]]);
   }
@@ -53,8 +53,8 @@ struct BakedGeometry {
   std::vector<uint32_t> vertices;      // of the mesh
   std::vector<Triangle> triangles;     // counter-clockwise from the front
   std::vector<vec2> lightmapUv;        // v down; empty: none
-  std::vector<vec4> colors;            // linear; empty: those of the mesh
-  std::vector<vec3> light;             // what was baked, linear and unscaled; empty: none
+  std::vector<vec4> colors;            // linear; empty: the mesh's own
+  std::vector<vec3> light;             // the baked light, linear and unscaled; empty: none
   std::vector<NamedArray> attributes;  // more of the vertices
 
   explicit BakedGeometry(const PlacedMesh& source) : placed(&source) {}

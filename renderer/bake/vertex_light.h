@@ -8,7 +8,8 @@
 
 namespace chromeball {
 
-// By instance, in the order of vertexPoints(). BakedGeometry::colors are linear, not scaled:
+// The geometry of each instance, its vertices in the order of vertexPoints(). BakedGeometry::colors
+// are linear, not scaled:
 //   irradiance         the mesh's colours x E / pi; shownColor() if showsWhole()
 //   ambient occlusion  the mesh's colours x the fraction of the sky
 //   radiance           shownColor()
@@ -26,12 +27,13 @@ bool showsWhole(BakedLight what, const Material& material);
 
 // The geometry that the points of vertices make.
 
-// By instance: its vertices, in the order of vertexPoints(), and the triangles between them.
+// The geometry of each instance: its vertices, in the order of vertexPoints(), and the triangles
+// between them.
 std::vector<BakedGeometry> vertexGeometry(const std::vector<PlacedMesh>& meshes,
                                           const std::vector<BakePoint>& points);
 
-// Of an instance: vertices without light take the mean of those that they share edges with, from
-// the edge of the lit part inwards.
+// Fills an instance's vertices without light with the mean of those that they share edges with,
+// from the edge of the lit part inwards.
 void fillVertices(const std::vector<Triangle>& triangles, std::vector<Rgb>& light,
                   std::vector<uint8_t> isLit);
 

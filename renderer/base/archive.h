@@ -23,7 +23,7 @@ class Archive {
   virtual bool reads() const = 0;
   virtual std::string name() const { return {}; }  // of the file that is read
   virtual uint64_t left() const { return 0; }      // its bytes that are not read yet
-  // What a damaged file would do otherwise must be checked after reading. Throws InputError.
+  // Other effects of a damaged file must be checked after reading. Throws InputError.
   void check(bool holds) const {
     if (reads() && !holds) throwDamaged();
   }
@@ -45,7 +45,7 @@ class Archive {
     bytes(items.data(), count * sizeof(T));
   }
 
-  // Of objects with archive().
+  // Objects with archive().
   template <class T>
   requires requires(T& t, Archive& a) { t.archive(a); }
   void operator()(std::vector<T>& items) {
@@ -85,7 +85,7 @@ class Archive {
     bytes(text.data(), count);
   }
 
-  // The items alone, whose number is known before they are read.
+  // Only the items; their number is known before they are read.
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void items(std::span<T> list) { itemBytes(list.data(), list.size(), sizeof(T)); }
@@ -127,7 +127,7 @@ class MemoryWriter : public Archive {
   }
 };
 
-// `contents` must outlive it. `name`: of the file that they are from.
+// `contents` must outlive it. `name`: the file that they are from.
 class MemoryReader : public Archive {
  public:
   explicit MemoryReader(std::span<const char> contents, std::string name = "memory")

@@ -31,7 +31,7 @@ namespace {
 
 constexpr size_t kReadAtOnce = 8 << 20;  // bytes
 
-// The system would take it for the file whose name ends there.
+// Refuses a zero byte: the system would take the path for the file whose name ends there.
 void refuseNul(const fs::path& path) {
   if (path.native().find('\0') != std::string::npos)
     throwInput("{}: the file name contains U+0000", path.string());
@@ -169,8 +169,8 @@ int openLocked(const fs::path& path) {
   return -1;
 }
 
-// What a temporary name has of the file's: all of it, or of a long name the begin and a hash, so
-// that wherever the file can be, the temporary file can.
+// The file's part of a temporary name: all of its name, or the beginning of a long one and a hash,
+// so that a temporary file is possible wherever the file is.
 std::string stemOf(const fs::path& file) {
   constexpr size_t kRest = 64;  // for the hash, the machine, the process and what is between them
   const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";

@@ -52,11 +52,11 @@ uint64_t fingerprint(const std::string& path);
 // A file that appears under its name only when complete. It is written under a temporary name in
 // the same folder and renamed by commit(). The destructor removes it if commit() was not called.
 //
-// The temporary name is that of the file and of this machine, and locked, so that what a killed
-// process left is overwritten by the next one that writes the file on the same machine. The files
-// of other machines are never touched: whether their process still exists is not known here.
+// The temporary name consists of the names of the file and of this machine. The file is locked, so
+// that the next process that writes it on the same machine overwrites what a killed one left. The
+// files of other machines are never touched: whether their process still exists is not known here.
 //
-// A symbolic link stays one: the file that it leads to is replaced.
+// A symbolic link remains: the file that it points to is replaced.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& target);  // throws as replaceableFile() does

@@ -24,7 +24,7 @@ uint64_t hash(uint64_t first, uint64_t second, Rest... rest) {
 // The top 24 bits as a float in [0, 1).
 inline float toUnit(uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
 
-// Tells damage, and one description from others (XXH3); no protection from intent.
+// Detects damage, and tells descriptions apart (XXH3); no protection against intent.
 uint64_t checksum(std::span<const char> bytes);
 
 }  // namespace chromeball

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON as text, and from text that may be damaged. The writer and the parser take a second to
-// compile: call these.
+// Writes JSON as text, and reads it from text that may be damaged. The writer and the parser take a
+// second to compile: call these.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,15 +12,15 @@
 
 namespace chromeball {
 
-// On one line if `indent` is negative. Names of files may hold any byte: what is not UTF-8 becomes
-// U+FFFD.
+// The text of a JSON value, on one line if `indent` is negative. Names of files may hold any byte:
+// what is not UTF-8 becomes U+FFFD.
 std::string jsonText(const nlohmann::json& json, int indent = -1);
 std::string jsonText(const nlohmann::ordered_json& json, int indent = -1);
 
 // Throws nlohmann::json::exception: parse_error, or out_of_range for a number beyond a double's.
 nlohmann::json parseJson(std::span<const uint8_t> text);
 
-// A `discarded` value if the text is no JSON, or nested more deeply than what this program writes.
+// A `discarded` value if the text is no JSON, or nested more deeply than this program writes it.
 nlohmann::ordered_json readJson(const std::string& text);
 
 // Reads JSON files that people write.

@@ -15,7 +15,7 @@ double memoryBudget();
 // Memory of long arrays, in large pages.
 
 // Asks the system for pages of 2 MB in [data, data + bytes), memory that nothing was written to:
-// giving out, and clearing, many pages of 4 KB takes longer than copying a file into them. Without
+// giving out, and clearing, many pages of 4 KB takes longer than copying a file into them. Has no
 // effect where the system has no such pages.
 void useLargePages(void* data, size_t bytes);
 

@@ -17,8 +17,8 @@ struct Remedy {
 
 struct Message {
   enum class Kind {
-    Note,     // what was detected or chosen
-    Warning,  // what may spoil the image
+    Note,     // something detected or chosen
+    Warning,  // something that may spoil the image
   };
   Kind kind;
   std::string text;  // one line, without a full stop
@@ -27,10 +27,10 @@ struct Message {
 
 using Messages = std::vector<Message>;
 
-// Many messages of a kind as one.
+// Merges many messages of a kind into one.
 
-// For a terminal: of more than three messages that differ only in numbers and in quoted names, the
-// first with a count of the others.
+// The messages for a terminal: where more than three differ only in numbers and in quoted names,
+// only the first, with a count of the others.
 Messages condensed(const Messages& messages);
 
 }  // namespace chromeball

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops on all threads, and values of which each thread has one. An exception in a loop's body ends
-// the loop. The code behind is oneTBB's, which parallel.cpp alone includes: its templates take long
-// to compile.
+// Loops on all threads, and values that each thread has its own copy of. An exception in a loop's
+// body ends the loop. The implementation is oneTBB's, which only parallel.cpp includes: its
+// templates take long to compile.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,8 @@ class RangeBody {
 // Calls the body for ranges of at most `size` that together cover [0, count).
 void parallelRanges(size_t count, size_t size, RangeBody body);
 
-// As parallelRanges(), but the fewer and longer the ranges are, the less their work differs.
+// The same as parallelRanges(), but the fewer and longer the ranges are, the less their work
+// differs.
 void parallelAdaptiveRanges(size_t count, RangeBody body);
 
 // Calls body(i) for each i in [begin, end).
@@ -45,7 +46,7 @@ void parallelFor(Index begin, Index end, const Body& body) {
   });
 }
 
-// As many elements as take longer than to start a task, where each takes some nanoseconds.
+// The number of elements that take longer than starting a task, if each takes some nanoseconds.
 constexpr size_t kElementsOfTask = 1 << 14;
 
 // Calls body(begin, end) for parts of [0, count) that together cover it; each of the `count` has
@@ -62,7 +63,7 @@ void forRanges(size_t count, const Body& body) {
   forRanges(count, 1, body);
 }
 
-// Calls row(y) for each row of an image; `work`: of a pixel, as a number of elements.
+// Calls row(y) for each row of an image; `work`: the work for a pixel, as a number of elements.
 template <class Row>
 void forRows(int width, int height, size_t work, const Row& row) {
   forRanges(size_t(height), work * size_t(width), [&](size_t begin, size_t end) {

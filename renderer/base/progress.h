@@ -31,7 +31,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// Who waits for long work, such as reading a scene: learns how far it is, and may end it.
+// An observer of long work, such as reading a scene: learns how far it is, and may end it.
 
 // Called from all threads of the work.
 class WorkMonitor {
@@ -54,8 +54,8 @@ class StopMonitor : public WorkMonitor {
   const std::atomic<bool>& stop_;
 };
 
-// While it lives, the monitor is that of this thread's work and of the loops that it starts
-// (base/parallel.h). Null: none, as at first.
+// While it lives, the monitor watches this thread's work and the loops that it starts
+// (base/parallel.h). Null: none, the initial state.
 class MonitoredWork {
  public:
   explicit MonitoredWork(WorkMonitor* monitor);
@@ -69,8 +69,9 @@ class MonitoredWork {
 
 WorkMonitor* currentMonitor();
 
-// Throws Interrupted if this thread's work is cancelled. For loops outside of base/parallel.h: a
-// turn may take some milliseconds, and should take a microsecond, since this takes nanoseconds.
+// Throws Interrupted if this thread's work is cancelled. For loops outside of base/parallel.h: an
+// iteration may take some milliseconds, and should take at least a microsecond, since this takes
+// nanoseconds.
 void endIfCancelled();
 
 void reportWork(const char* stage, double fraction);

@@ -44,7 +44,7 @@ size_t characterLength(std::string_view text) {
 }
 
 // Characters that reorder a line (Unicode Standard Annex 9, tables of explicit and implicit marks):
-// U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069; and those that end one: U+2028,
+// U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069; and characters that end one: U+2028,
 // U+2029.
 bool movesText(std::string_view character) {
   const auto isBetween = [&](std::string_view first, std::string_view last) {

@@ -9,14 +9,14 @@
 
 namespace chromeball {
 
-// Valid UTF-8 of one line without control characters: a line break becomes a space, an escape
-// sequence of a terminal (ECMA-48: CSI and OSC) nothing, another control character, among them
-// those that turn the direction of a line (right-to-left override), or a byte that is not UTF-8
-// `?`. What is long is shortened in its middle, with `...` there: each word of more than 200 bytes,
-// and the whole to 2000 bytes.
+// The text as one line of valid UTF-8 without control characters: a line break becomes a space; an
+// escape sequence of a terminal (ECMA-48: CSI and OSC) is removed; another control character, such
+// as one that turns the direction of a line (right-to-left override), or a byte that is not UTF-8
+// becomes `?`. Long text is shortened in its middle, with `...` there: each word to 200 bytes, the
+// whole to 2000 bytes.
 std::string printable(std::string_view text);
 
-// Likewise a name within a message: at most 200 bytes, also if it has spaces.
+// The same for a name within a message: at most 200 bytes, also if it has spaces.
 std::string printableName(std::string_view name);
 
 // "a, b, c, d, e, f and 994 more": the first names of a list, each as by printableName().

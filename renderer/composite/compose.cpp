@@ -133,8 +133,8 @@ Image differenceOf(const DifferentialFilm& film, const Image& plate) {
 }
 
 // The standard error of luminance. Alpha, which is not filtered, adds the error of the plate's
-// share. A negative estimate that is set to 0 is nearer to the truth by as much. The change of the
-// plate has at most the error of the plate or of itself, whichever is larger.
+// share. Setting a negative estimate to 0 brings it nearer to the truth by as much. The change of
+// the plate has at most the error of the plate or of itself, whichever is larger.
 Image errorOf(const std::vector<DenoisedPart>& parts, const Image& differences,
               const Composite& composite, const Image& unclamped, const HalvedImage& alpha,
               const Image& plate) {

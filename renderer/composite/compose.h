@@ -33,18 +33,18 @@ struct Composite {
 Composite compose(const DifferentialFilm& film, const Image& mean, const Image& plate,
                   CompositeMode mode);
 
-// The luminances and errors of the composite. `errors`: those of the difference formula. For the
-// ratio they are propagated to first order, with L_noobj treated as exact.
+// The luminances and errors of the composite. `errors`: the difference formula's. For the ratio
+// they are propagated to first order, with L_noobj treated as exact.
 PixelErrors compositeErrors(const DifferentialFilm& film, const Composite& composite,
                             PixelErrors errors);
 
-// Removes the noise of what the objects add to a composite; the plate is not filtered.
+// Removes the noise of the light that the objects add to a composite; the plate is not filtered.
 
 // The composite of the denoised radiance of the objects and of the denoised difference L_obj -
 // L_noobj; for the ratio, L_noobj is denoised too. Alpha stays as it is. A pixel keeps the plate's
 // bits where neither it nor a pixel around it (7 columns and rows) is affected by the objects, and
-// where the camera sees no surface. A shadow catcher has no plate, which is empty. `render` must be
-// of settings with `denoise`. nullopt if `stop` is set meanwhile.
+// where the camera sees no surface. A shadow catcher has no plate, which is empty. `render` must
+// have been made with `denoise`. nullopt if `stop` is set meanwhile.
 std::optional<Denoised> denoiseComposite(const RenderResult& render, const Image& plate,
                                          CompositeMode mode, const Progress& progress,
                                          const std::atomic<bool>& stop);

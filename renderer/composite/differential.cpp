@@ -6,8 +6,8 @@
 namespace chromeball {
 namespace {
 
-// The layers of a place that the world without objects has too, for a path that goes on in
-// `direction`: at the path's surface, or the next one of them.
+// The layers of a place that the world without objects has too, for a path that continues in
+// `direction`: starting at the path's surface or the next of the layers.
 Place withoutObjects(const CompositeWorlds& worlds, const Place& place, const vec3& direction) {
   const bool ascends = glm::dot(place.axis, direction) > 0;
   Place kept = place;
@@ -49,7 +49,7 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
       state.place = isInPlace ? withoutObjects(worlds, state.place, state.ray.direction) : Place();
       context.sampler.startVertex(state.depth);
       hit = local.nextHit(state, context);
-      const auto records = std::exchange(context.records, nullptr);  // those of `whole` suffice
+      const auto records = std::exchange(context.records, nullptr);  // records of `whole` suffice
       sample.without += local.follow(state, hit, context);
       context.records = records;
       return sample;

@@ -15,8 +15,8 @@ namespace chromeball {
 
 // Ray masks of the two worlds of a composite: with and without the synthetic objects.
 
-// By instance: true for a synthetic object, false for the local scene (a model of real surfaces in
-// the plate).
+// For each instance: true for a synthetic object, false for the local scene (a model of real
+// surfaces in the plate).
 using ObjectMask = std::vector<bool>;
 
 // Rays with kLocalScene hit only the local scene; rays with kAllInstances also hit the objects.
@@ -43,7 +43,7 @@ struct CompositeWorlds {
   bool isObject(const Hit& hit) const { return whole.world().accel.mask(hit.instance) == kObjects; }
 
   PathTracer whole, local;
-  PathTracer shared;  // as `whole`, and compares its shadow rays with those of `local`
+  PathTracer shared;  // as `whole`, and compares shadow rays with `local`
 
  private:
   static PathSettings with(PathSettings settings, RayMask visible, RayMask compared) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Additional layers of composites, besides those of film/aov.h.
+// Additional layers of composites, besides the layers of film/aov.h.
 #pragma once
 
 #include <optional>

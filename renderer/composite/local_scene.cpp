@@ -29,7 +29,7 @@ void changeLocalMaterials(Scene& scene, const ObjectMask& isObject, const Change
   }
 }
 
-// Without metal, and the extensions that only colour or stretch its highlights.
+// Removes metal and the extensions that only colour or stretch its highlights.
 void makeDielectric(Material& m) {
   m.metallic = 0;
   if (m.extended) m.extended->anisotropy = m.extended->iridescence = 0;

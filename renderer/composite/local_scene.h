@@ -26,7 +26,7 @@ ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& name
 void makeProjected(Scene& scene, const ObjectMask& isObject, const Projection& projection);
 
 // Gives the base of the local scene's materials a dielectric specular lobe (section 9.7.2):
-// `strength` times that of refractive index 1.5; `roughness` as in glTF. Coats, sheen and
+// `strength` times the lobe of refractive index 1.5; `roughness` as in glTF. Coats, sheen and
 // transmission stay.
 void makeGlossy(Scene& scene, const ObjectMask& isObject, float strength, float roughness);
 
@@ -43,10 +43,10 @@ struct Ground {
   vec2 min, max;     // x and z
 };
 
-// The plane y = height as far as 30 times the size of the objects' box and their distance from the
-// camera together, on all sides: the ground behind the camera lights the objects too, and what lies
-// beyond is within 2 degrees of their horizon. Throws InputError, begun by `location`, if the
-// camera is below the plane or does not see it.
+// The plane y = height, which extends on all sides to 30 times the sum of the size of the objects'
+// box and their distance from the camera: the ground behind the camera lights the objects too, and
+// what lies beyond is within 2 degrees of their horizon. Throws InputError, begun by `location`, if
+// the camera is below the plane or does not see it.
 Ground groundAround(const Camera& camera, float aspectRatio, const Bounds& objects, float height,
                     const std::string& location);
 

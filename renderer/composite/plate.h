@@ -27,7 +27,7 @@ Image scaledPlate(const Image& image, int width, int height, const std::string& 
 
 struct PlateScale {
   Rgb scale{1};        // factor on the probe's radiance
-  double scatter = 0;  // of the ground's luminance: half of what 68% of its pixels span / median
+  double scatter = 0;  // of the ground's luminance: half the span of 68% of its pixels / median
   size_t pixels = 0;   // that show the ground
 };
 
@@ -35,7 +35,7 @@ struct PlateScale {
 std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
                                    int width, int height);
 
-// The scale with which a matte ground of this reflectance has the median radiance of the plate: per
+// The scale at which a matte ground of this reflectance has the median radiance of the plate: per
 // channel pi L / (reflectance E), with E the irradiance of the ground by the probe with scale 1,
 // W/m^2. Medians, since other things may stand on the ground. `pixels` not empty; E and the
 // reflectance above 0.

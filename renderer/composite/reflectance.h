@@ -10,9 +10,9 @@ namespace chromeball {
 
 struct ReflectanceSolution {
   size_t pixels = 0;   // number of pixels that see the local scene
-  size_t clamped = 0;  // number of these that need an albedo above 1
-  // Mean luminance of the plate over that of the local scene rendered with the model's albedo; 0 if
-  // the latter is black.
+  size_t clamped = 0;  // number of pixels that need an albedo above 1
+  // Mean luminance of the plate / mean luminance of the local scene rendered with the model's
+  // albedo; 0 if the latter is black.
   double exposureRatio = 0;
   double lastChange = 0;  // mean |change| of the reflectance in the last iteration
 };

@@ -53,7 +53,7 @@ Image sum(Image a, const Image& b) {
   return a;
 }
 
-// With the layers of SurfaceLayers, if they are wanted.
+// Renders the picture, with the layers of SurfaceLayers if they are wanted.
 RenderResult renderPicture(const Integrator& picture, const PathTracer& tracer,
                            const Camera& camera, const RenderSettings& settings,
                            const Progress& progress, const std::atomic<bool>& stop,
@@ -72,7 +72,8 @@ RenderSettings firstPass(RenderSettings settings) {
   return settings;
 }
 
-// As many samples as the first pass took before a limit ended it, and other random numbers.
+// The settings of the second pass: as many samples as the first took before a limit ended it, and
+// other random numbers.
 RenderSettings secondPass(RenderSettings settings, uint32_t samples) {
   settings.seed = hash(settings.seed, 1);
   settings.samples = std::max(samples, 1u);  // none if the first pass was stopped at once

@@ -16,10 +16,11 @@ struct CompositeRender {
   DifferentialFilm film() const { return DifferentialFilm(result.layers); }
 };
 
-// `world` must have the masks of composite/differential.h, and the plate the size of the image;
-// empty, of one pass: the mean is the radiance with the objects. `behindObjects`: also estimate
-// L_noobj where an object hides it. `control`: of one pass; may be null. Limits hold for both
-// passes together; a pixel that one of them did not reach before it was stopped has no samples.
+// `world` must have the masks of composite/differential.h, and the plate the size of the image; if
+// it is empty, in one pass, the mean is the radiance with the objects. `behindObjects`: also
+// estimate L_noobj where an object hides it. `control`: for one pass; may be null. Limits hold for
+// both passes together; a pixel that one of them did not reach before it was stopped has no
+// samples.
 CompositeRender renderComposite(const World& world, const Camera& camera,
                                 const LightSource& lighting, const Image& plate,
                                 const RenderSettings& settings, Passes passes, bool behindObjects,

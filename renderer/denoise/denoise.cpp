@@ -62,7 +62,7 @@ Component componentOf(HalfPlanes halves) {
   return component;
 }
 
-constexpr float kInsignificant = 0.005f;  // difference of a feature; of disparity: relative
+constexpr float kInsignificant = 0.005f;  // difference of a feature; relative for disparity
 
 // The halves of a feature, scaled, as guides of each other.
 HalfGuides guidesOf(const HalvedImage& image, float scale) {
@@ -83,7 +83,7 @@ HalfGuides guidesOf(const HalvedImage& image, float scale) {
   return halves;
 }
 
-// Features without their own noise, which is correlated with that of the image where a pixel sees
+// Features without their own noise, which is correlated with the image's noise where a pixel sees
 // several surfaces at random (edges, lenses, transparency): a regression would keep it.
 FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& stop) {
   FeaturePlanes features;
@@ -107,8 +107,8 @@ FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& sto
   return features;
 }
 
-// Guides that are filtered themselves. Their remaining variance is that between the halves, and a
-// fraction of the noise, as its differences between neighbours underestimate it.
+// Guides that are filtered themselves. Their remaining variance is the variance between the halves
+// plus a fraction of the noise, since its differences between neighbours underestimate it.
 HalfGuides guidesOf(const HalfPlanes& filtered, const Component& component) {
   constexpr float kRemaining = 0.05f;
   constexpr int kReach = 2;
@@ -192,7 +192,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
       for (int x = 0; x < width; ++x) {
         if (isEmpty(input, part, x, y)) continue;
         for (int c = 0; c < 3; ++c) {
-          // The light of fireflies is missing; without the limit there would be their noise.
+          // The light of fireflies is missing; without the limit their noise would be there.
           const float known = std::max(found.error[size_t(c)].at(x, y), 0.0f);
           const float error =
               std::min(known + squaredBias.at(x, y), std::max(known, noise[size_t(c)].at(x, y)));
@@ -236,7 +236,7 @@ double remainingNoise(const Denoised& denoised) {
   if (!(mean > 0)) return std::numeric_limits<double>::quiet_NaN();
   for (int y = 0; y < color.height; ++y)
     for (int x = 0; x < color.width; ++x) {
-      // As far as is known, a pixel is as bright as its error if that exceeds its luminance.
+      // As far as is known here, a pixel is as bright as its error if that exceeds its luminance.
       const double absolute = double(*error.at(x, y));
       const double reference =
           std::max({double(luminance(color.rgb(x, y))), absolute, 0.01 * mean});

@@ -19,7 +19,7 @@ struct DenoiseInput {
   HalvedImage albedo, normal, disparity;  // of FeatureFilm
 };
 
-// Both RGB; the errors are estimates, of noise and blur together.
+// Both images are RGB; the errors are estimates of noise and blur together.
 struct DenoisedPart {
   Image color, squaredError;
 };
@@ -34,7 +34,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
 struct Denoised {
   Image color;       // RGB radiance; RGBA of a shadow catcher
   Image error;       // one channel: estimated standard error of luminance
-  Image whole = {};  // to which errors are relative; empty: the colour
+  Image whole = {};  // errors are relative to it; empty: the colour
 };
 
 // The sum of the parts; negative radiance is set to 0.

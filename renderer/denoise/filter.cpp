@@ -44,7 +44,8 @@ RgbPlanes finished(const Predictions& predictions, const RgbPlanes& noisy) {
   return result;
 }
 
-// Eight pixels from (x, y); `index` is that of the first in its tile. `power` is a power of two.
+// Averages eight pixels from (x, y); `index` is the first one's in its tile. `power` is a power of
+// two.
 void average(const TileWeights& weights, int power, size_t index, std::span<const Plane> channels,
              int x, int y, std::span<Plane> means) {
   Float8 sums[3]{}, weightSum{};
@@ -159,8 +160,8 @@ FilteredHalves filterHalves(const Component& component, const HalfGuides& guides
 
 namespace {
 
-// Of the window that must hold as much light in the other half. One that is as wide as the filter's
-// has light of other objects, which says nothing of this pixel.
+// The reach of the window that must hold as much light in the other half. A window as wide as the
+// filter's has light of other objects, which says nothing about this pixel.
 constexpr int kFireflyReach = 2;
 constexpr float kFireflyWindow = (2 * kFireflyReach + 1) * (2 * kFireflyReach + 1);
 constexpr int kFireflyBiasReach = 3 * TileWeights::kReach;

@@ -17,7 +17,7 @@ struct Component {
   RgbPlanes variance;  // of the mean of both halves
 };
 
-// What weights[h] are computed from: half h.
+// The input of weights[h]: half h.
 using HalfGuides = std::array<NoisyPlanes, 2>;
 
 HalfGuides guidesOf(const Component& component);
@@ -31,7 +31,7 @@ constexpr int kBandwidths = 2;
 
 struct FilteredHalves {
   std::array<HalfPlanes, kBandwidths> regressions;
-  HalfPlanes averages;  // weighted means: of what no feature explains, such as a dark reflection
+  HalfPlanes averages;  // weighted means, for what no feature explains, such as a dark reflection
 };
 
 // The regressions have the weights raised to powers[0] and powers[1] (addRegressions()), the
@@ -42,14 +42,14 @@ FilteredHalves filterHalves(const Component& component, const HalfGuides& guides
                             const std::array<int, kBandwidths>& powers, int averagePower,
                             const std::atomic<bool>& stop);
 
-// Limits pixels that hold so much light that a filter would turn them into bright spots.
+// Limits pixels with so much light that a filter would turn them into bright spots.
 
-// A pixel of one half of the samples, the sum of whose squared channels exceeds that of the 5 x 5
-// pixels around it in the other half, is scaled down to that sum. Rare bright paths are then
-// missing from the image; where they are frequent, both halves have them, and nothing changes.
-// Returns an estimate of the squared bias of each channel: the product of the mean light that
-// either half loses around a pixel. (The square of the loss of both would overestimate it: the
-// rarer the paths, the more.)
+// Limits a pixel of one half of the samples to the light of the 5 x 5 pixels around it in the other
+// half: if the sum of its squared channels exceeds theirs, it is scaled down to their sum. Rare
+// bright paths are then missing from the image; where they are frequent, both halves have them, and
+// nothing changes. Returns an estimate of the squared bias of each channel: the product of the mean
+// light that either half loses around a pixel. (The square of the loss of both would overestimate
+// it: the rarer the paths, the more.)
 Plane limitFireflies(HalfPlanes& halves);
 
 }  // namespace chromeball

@@ -128,7 +128,7 @@ struct NormalEquations {
     return scale;
   }
 
-  // In place: L D L^T.
+  // Factorises into L D L^T, in place.
   void factorize() {
     constexpr float kSmallestPivot = 1e-5f;  // for rounding errors where features depend linearly
     for (int j = 0; j < kTerms; ++j) {
@@ -148,7 +148,7 @@ Float8 raised(Float8 weight) {
   return weight;
 }
 
-// Eight pixels from (x, y); `index` is that of the first in its tile.
+// Processes eight pixels from (x, y); `index` is the first one's in its tile.
 template <int kPower>
 void addRegression(const TileWeights& weights, size_t index, const RgbPlanes& color,
                    const FeaturePlanes& features, int x, int y, Predictions& predictions) {

@@ -35,7 +35,7 @@ class TileWeights {
   // 0 for p or its neighbour outside the image. (left, top) is the tile's first pixel.
   void compute(const NoisyPlanes& guide, int left, int top);
 
-  // Those of neighbour (dx, dy), for all p; neighbours are ordered by rows.
+  // The weights of neighbour (dx, dy), for all p; neighbours are ordered by rows.
   const Tile& operator[](size_t neighbour) const { return weights_[neighbour]; }
 
  private:
@@ -57,7 +57,7 @@ struct FeaturePlanes {
   std::array<Plane, kFeatures> ridges;  // squares of differences that explain nothing
 };
 
-// Sums over the windows that contain a pixel, of what their regressions predict for it.
+// For each pixel, the sum of the predictions by the regressions of all windows that contain it.
 struct Predictions {
   RgbPlanes weighted;  // weight x prediction
   Plane weights;

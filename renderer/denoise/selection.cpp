@@ -13,14 +13,14 @@ constexpr int kVarianceReach = 1;  // variances in it
 constexpr float kDark = 0.01f;     // as in film/noise.h; the mean of the image is about 1
 constexpr int kChoiceReach = 2;  // of the windows over which errors decide, and choices are blended
 constexpr float kWindow = (2 * kChoiceReach + 1) * (2 * kChoiceReach + 1);
-// As kDark, where the errors of a window decide: between regressions, and between these and an
-// average or the noisy image. The latter is lower, so that less noise of bright pixels does not
-// excuse light that a regression brings to dark ones beside them.
+// The same as kDark, where the errors of a window decide: between regressions, and between these
+// and an average or the noisy image. The latter is lower, so that reduced noise in bright pixels
+// does not excuse light that a regression brings to dark pixels beside them.
 constexpr float kDarkRegression = 1.5f, kDarkOther = 0.1f;
 
-// Standard errors by which a candidate must be better than those before it. Where a few pixels hold
-// all of the noise, the errors of filtered and noisy images are known equally badly, and the
-// filtered image is better.
+// The number of standard errors by which a candidate must be better than the ones before it. Where
+// a few pixels hold all of the noise, the errors of filtered and noisy images are known equally
+// badly, and the filtered image is better.
 float marginOf(FilterKind filter) {
   switch (filter) {
     case FilterKind::None:
@@ -47,10 +47,10 @@ float total(const RgbPlanes& planes, int x, int y) {
   return planes[0].at(x, y) + planes[1].at(x, y) + planes[2].at(x, y);
 }
 
-// What the errors of a pixel are relative to. The narrow filters know a sharp highlight from the
-// dark pixels around it, and both halves of the samples contain it, but only one contains a
-// firefly. A dark spot, to which they bring light, is not brighter than its noise and that of its
-// neighbours allow.
+// The scale of the errors of a pixel. The narrow filters know a sharp highlight from the dark
+// pixels around it, and both halves of the samples contain it, but only one contains a firefly. A
+// dark spot, to which they bring light, is not brighter than its noise and its neighbours' noise
+// allow.
 Plane squaredSizes(const std::vector<Candidate>& candidates) {
   const Candidate& noisy = candidates.back();
   const auto localVariance = [&](size_t c) { return boxMean(noisy.variance[c], kSizeReach); };
@@ -70,8 +70,8 @@ Plane squaredSizes(const std::vector<Candidate>& candidates) {
   });
 }
 
-// The index of the chosen candidate. By relative errors: by absolute ones, less noise of a bright
-// pixel would excuse its light in all pixels around it.
+// The index of the chosen candidate, by relative errors: with absolute ones, reduced noise in a
+// bright pixel would excuse its light in all pixels around it.
 Plane choose(const std::vector<Candidate>& candidates) {
   const Plane size = squaredSizes(candidates);
   const auto errorOf = [&](size_t i) {

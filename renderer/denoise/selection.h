@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// None; a regression of narrow or wide bandwidth; an average.
+// No filter; a regression of narrow or wide bandwidth; an average.
 enum class FilterKind { None, Narrow, Wide, Average };
 
 // An image, and unbiased but noisy estimates of the squared errors of its pixels: squared bias and
@@ -21,8 +21,8 @@ struct Candidate {
 // The noisy image itself.
 Candidate unfiltered(const Component& component);
 
-// The mean of the filtered halves f. With c the noisy halves, whose noise is independent of that of
-// the other half,
+// The mean of the filtered halves f. With c the noisy halves, whose noise is independent of each
+// other's,
 //   E (f0 - c1)^2 = error of f0 + var c1,
 //   var c1 = E (c0 - c1)^2 / 2,   var f0 = E (f0 - f1)^2 / 2,
 // and the error of the mean is the mean error of f0 and f1 less half the variance of either
@@ -39,9 +39,9 @@ struct Selection {
   RgbPlanes color, error;
 };
 
-// At each pixel the first candidate than which no later one is significantly better on average over
-// the window around the pixel; blended where the choice changes. One or more candidates are narrow,
-// and the last is the unfiltered image.
+// Selects, at each pixel, the first candidate that no later one significantly improves on, on
+// average over the window around the pixel; blends where the choice changes. One or more candidates
+// are narrow, and the last is the unfiltered image.
 Selection best(const std::vector<Candidate>& candidates);
 
 }  // namespace chromeball

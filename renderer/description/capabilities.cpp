@@ -23,7 +23,7 @@ bool hasPlate(const D& d) {
   return d.composite && d.composite->mode != CompositeMode::ShadowCatcher;
 }
 
-// What may be in a description.
+// Features that may be in a description.
 constexpr Feature kComposite{"a composite", "", [](const D& d) { return d.composite.has_value(); }};
 constexpr Feature kPlate{"a composite with a plate", "", hasPlate};
 constexpr Feature kShadowCatcher{"a shadow catcher", "shadow-catcher",
@@ -97,7 +97,7 @@ constexpr Feature kDisplay{"a display", "display",
 constexpr Feature kScaleByPlate{"a probe scaled by the plate", "probe.scale",
                                 [](const D& d) { return d.probe.isScaledByPlate; }};
 
-// What may be missing.
+// Features that may be missing.
 constexpr Feature kNoPlate{"no plate", "", [](const D& d) { return !hasPlate(d); }};
 constexpr Feature kNoGround{"no ground of a composite", "", [](const D& d) {
                               return !d.composite || d.composite->ground !=

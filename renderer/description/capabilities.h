@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What cannot be combined, and what has no effect alone: two tables, from which checks, messages
-// and documentation are made.
+// Settings that cannot be combined, and settings that have no effect alone: two tables, from which
+// checks, messages and documentation are made.
 #pragma once
 
 #include <optional>
@@ -16,22 +16,22 @@ namespace chromeball {
 // A property of a description that another one may exclude.
 struct Feature {
   std::string_view name;     // "a composite", for documentation
-  std::string_view setting;  // whose origin messages name, and that may end a conflict; empty: none
+  std::string_view setting;  // messages name its origin, and it may end a conflict; empty: none
   bool (*isIn)(const RenderDescription&);
 };
 
 struct Conflict {
-  const Feature& feature;  // at whose setting the message begins
+  const Feature& feature;  // the message begins with its setting
   const Feature& with;
   std::string_view why;  // and what to do
 };
 
 std::span<const Conflict> conflicts();
 
-// The first one in a description; null: none.
+// The first conflict in a description; null: none.
 const Conflict* conflictIn(const RenderDescription& description);
 
-// Throws InputError "SETTING'S ORIGIN: WHY" for the first one.
+// Throws InputError "SETTING'S ORIGIN: WHY" for the first conflict.
 void checkCapabilities(const RenderDescription& description);
 
 // What a description's files contain, as far as settings depend on it.
@@ -53,11 +53,11 @@ struct Dependence {
 
 std::span<const Dependence> dependences();
 
-// Where a given setting is from, with its name: "--shutter", "FILE:LINE: `camera.shutter`".
+// The origin of a given setting, with its name: "--shutter", "FILE:LINE: `camera.shutter`".
 std::string namedOrigin(const RenderDescription& description, std::string_view setting);
 
 // "--probe-rotation has no effect without a probe", or "FILE:LINE: `probe.rotation` ...", for each
-// setting that was given and has none.
+// setting that was given and has no effect.
 std::vector<std::string> idleSettings(const RenderDescription& description,
                                       const SceneContents& contents);
 

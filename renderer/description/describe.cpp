@@ -24,8 +24,8 @@ Json limitOf(int depth) { return depth < INT_MAX ? Json(depth) : Json(); }
 Json numberOf(float x) { return std::stod(fmt::format("{}", x)); }
 Json numberOf(const std::optional<float>& x) { return x ? numberOf(*x) : Json(); }
 Json numberOf(const std::optional<double>& x) { return x ? Json(*x) : Json(); }
-// The shortest number near `guess` of which `map` makes exactly `image`, as it has of what a user
-// gave; `guess` where rounding leaves none.
+// The shortest number near `guess` that `map` maps exactly to `image`, as it did with the user's
+// number; `guess` if rounding leaves none.
 template <class Map>
 Json inverseOf(const Map& map, double image, double guess) {
   for (const double number : {std::stod(fmt::format("{:.15g}", guess)), guess,

@@ -24,8 +24,8 @@ std::vector<std::string> layerNames(const RenderDescription& description);
 
 // Tells a scene in memory from others.
 
-// Of everything that rays and cameras see: geometry, materials, texels, lights, cameras. In one
-// pass over the arrays.
+// A hash of everything that rays and cameras see: geometry, materials, texels, lights, cameras.
+// Takes one pass over the arrays.
 uint64_t hashOf(const Scene& scene);
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a description has besides the values of options.
+// The parts of a description that are not values of options.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

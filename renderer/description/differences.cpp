@@ -10,8 +10,8 @@
 namespace chromeball {
 namespace {
 
-// What decides the light, and the place and size of the picture, under the names of describe().
-// These and the settings of the integrator need no new scene.
+// The values that decide the light, and the place and size of the picture, under the names of
+// describe(). Changes of these, or of the settings of the integrator, need no new scene.
 constexpr std::array kOfProbe = {"probe", "probe-mapping", "probe-rotation", "probe-scale",
                                  "probe-in-memory"};
 constexpr std::array kOfLighting = {"strategy",    "mis",        "sun-angle",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a render must be made again when its description changes.
+// The parts of a render that must be made again when its description changes.
 #pragma once
 
 #include <set>
@@ -9,14 +9,14 @@
 
 namespace chromeball {
 
-// What is in memory differs if it is another object: hashes of a large scene would take as long as
-// a frame.
+// Data in memory count as different if they are another object: hashes of a large scene would take
+// as long as a frame.
 class Differences {
  public:
   Differences(const RenderDescription& a, const RenderDescription& b);
 
-  // Nothing of the models and of what else is in the scene; a name that is in none of the lists of
-  // differences.cpp loads everything again.
+  // Whether nothing of the models and of the rest of the scene differs. A name that is in none of
+  // the lists of differences.cpp loads everything again.
   bool keepScene() const;
   static bool keepsScene(const std::string& name);
   bool inProbe() const;

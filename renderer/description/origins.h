@@ -13,13 +13,13 @@ inline std::string elementName(std::string_view array, size_t index) {
   return std::string(array) + "[" + std::to_string(index) + "]";
 }
 
-// "scene.toml:12" or "--samples" by the names of the table of settings ("render.samples"), and by
-// those of entries, which are their places in RenderDescription ("camera.lens", "sources[2]"). What
-// is from memory is named by the name itself.
+// Where values come from, such as "scene.toml:12" or "--samples". They are found by their names in
+// the table of settings ("render.samples") or by their places in RenderDescription ("camera.lens",
+// "sources[2]"). The origin of a value from memory is its name.
 class Origins {
  public:
   void set(const std::string& name, const std::string& location) { locations_[name] = location; }
-  // All of the others; they take precedence.
+  // Adds all of the others; they take precedence.
   void add(const Origins& others) {
     for (const auto& [name, location] : others.locations_) set(name, location);
   }

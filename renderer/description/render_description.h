@@ -24,10 +24,10 @@ namespace chromeball {
 class LightSource;
 class Probe;
 
-// The time that an image takes, from its own on.
+// The time that the image covers, beginning at its own time.
 struct Shutter {
   double frames = 0, fps = 24;
-  int steps = 8;    // straight pieces in which what moves moves, up to kMostMotionSteps
+  int steps = 8;    // straight pieces of each motion, up to kMostMotionSteps
   double turn = 0;  // of the camera's orbit, degrees
 
   double seconds() const { return frames / fps; }
@@ -36,7 +36,7 @@ struct Shutter {
 struct CameraDescription {
   std::optional<CameraEntry> placed;  // nullopt: one of the models, or one that frames them
   std::optional<std::string> name;    // of the models'; nullopt: the first
-  std::optional<std::string> file;    // from which it was read
+  std::optional<std::string> file;    // that it was read from
   std::optional<Lens> lens;
   std::optional<Optics> optics;
   double orbit = 0;                // turn around the models, degrees
@@ -53,8 +53,8 @@ struct ProbeDescription {
   bool isScaledByPlate = false;  // so that the ground of a composite looks as in the plate
 };
 
-// What part of the light renders: the suns of the probe and of the scene file, or all the rest.
-// Both together are the whole.
+// The part of the light that is rendered: the suns of the probe and of the scene file, or all the
+// rest. Both together are the whole.
 enum class LightFrom { All, Suns, Rest };
 
 struct LightingDescription {
@@ -64,7 +64,7 @@ struct LightingDescription {
   std::optional<double> sunAngle;  // StrategyOptions::sunAngle
   bool showLights = false;         // StrategyOptions::showLights
   // A program's own strategy, which takes the place of the named one; empty: none. The probe
-  // outlives what it makes. `strategy` names it in headers and identities.
+  // outlives the strategy that it makes. `strategy` names it in headers and identities.
   std::function<std::unique_ptr<LightSource>(const Probe&)> make = {};
 };
 
@@ -132,7 +132,7 @@ struct RenderDescription {
   Origins origins;
   std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
 
-  // For messages: that of the first model.
+  // The scene's name in messages: the first model's.
   std::string sceneName() const { return models.empty() ? "the scene" : models.front().file; }
 };
 

@@ -18,7 +18,7 @@ struct ModelEntry {
   std::string file;
   Transform placement;  // translation * rotation * scale
   GltfChoice choice;
-  glm::dvec3 translationRest{0};  // what float rounds off the translation
+  glm::dvec3 translationRest{0};  // the part of the translation that float rounds off
 };
 
 // The camera of a file, in world coordinates. It is rounded to float relative to the scene's
@@ -37,7 +37,7 @@ struct CameraEntry {
   }
 };
 
-// [surroundings], likewise.
+// [surroundings], in world coordinates too.
 struct SurroundingsEntry {
   Surroundings shape;  // all but the places
   glm::dvec3 min{0}, max{0}, center{0}, capture{0};
@@ -56,7 +56,7 @@ struct Lens {
   float aperture, focus;  // diameter, and distance of the plane in focus: metres, > 0
 };
 
-// What distinguishes the image of a real lens from a pinhole's; applies to any perspective camera.
+// The differences of a real lens's image from a pinhole's; applies to any perspective camera.
 struct Optics {
   std::optional<vec2> principalPoint;  // Camera::principalPoint
   Distortion distortion;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kNoDepth = 1e10f;
 
-// 1 of a zero vector.
+// Gives 1 for a zero vector.
 double lengthOf(const double* v) {
   const double length = std::hypot(v[0], v[1], v[2]);
   return length > 0 ? length : 1;

@@ -27,13 +27,13 @@ struct FirstHit {
   // Radiance found before the path's second scattering by a broad lobe; none: all of the path's.
   std::optional<Rgb> direct;
 
-  // Of approximate/occlusion.h; of one sample.
+  // Results of approximate/occlusion.h, from one sample.
   float ambientOcclusion = 0;  // 1 where the sky is visible
   vec3 unoccluded{0};          // its direction
   Rgb irradiance{0};           // W/m^2
 };
 
-// The names are those of the command line and of the EXR layers. Values per pixel:
+// The names are the same on the command line and in the EXR file. Values per pixel:
 //   albedo, normal  mean over all samples; a sample without a hit counts as 0
 //   depth           mean over the samples with a hit; 1e10 if none
 //   alpha           fraction of samples with a hit
@@ -86,7 +86,7 @@ class AovFilm {
   void add(int x, int y, const FirstHit& first);
   void add(int x, int y, Defect defect);
 
-  // As Film::add(), copyPixels(), part() and archive(). Of indices, this film's stay.
+  // The same as Film::add(), copyPixels(), part() and archive(). add() keeps this film's indices.
   void add(const AovFilm& part, int x, int y);
   void copyPixels(const AovFilm& from, const PixelRect& rect);
   AovFilm part(const PixelRect& rect) const;

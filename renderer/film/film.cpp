@@ -11,7 +11,7 @@
 namespace chromeball {
 namespace {
 
-// Sum of (x - mean)^2 with Bessel's correction.
+// The sum of (x - mean)^2 with Bessel's correction.
 glm::dvec4 squaredDeviations(const glm::dvec4& sumOfSquares, const glm::dvec3& sum, double count) {
   if (count < 2) return glm::dvec4(0);
   const glm::dvec4 mean(sum / count, luminance(sum / count));

@@ -53,11 +53,11 @@ class Film {
   // Adds the samples of another film, whose first pixel is this one's pixel (x, y), and which must
   // lie within this one.
   void add(const Film& part, int x, int y);
-  // Whether weigh() was called, of this film or of one that is added. Must be told to both films
-  // before parts of them are added or read by several threads.
+  // Whether weigh() was called for this film or for one that was added. Call beWeighed() for both
+  // films before several threads add or read parts of them.
   bool isWeighed() const { return !early_.empty(); }
   void beWeighed() { early_.resize(pixels_.size()); }
-  // Takes these pixels of a film of the same size, weighed as this one.
+  // Takes these pixels from a film of the same size, weighed like this one.
   void copyPixels(const Film& from, const PixelRect& rect);
   Film part(const PixelRect& rect) const;
   void archive(Archive& a, Rows rows);

@@ -16,8 +16,8 @@ namespace chromeball {
 
 enum class Accumulation { Sum, Maximum };
 
-// One RGB value per pixel and layer, of all samples or of each half of them (Film). In double: a
-// float sum stops growing after some million samples.
+// One RGB value per pixel and layer, for all samples or for each half of them (Film). In double
+// precision: a float sum stops growing after some million samples.
 class LayerFilm {
  public:
   LayerFilm(int width, int height, std::vector<Accumulation> layers, bool inHalves = false);
@@ -29,11 +29,11 @@ class LayerFilm {
   // Adds one sample: one value per layer. Thread-safe for different pixels.
   void add(int x, int y, int half, std::span<const Rgb> sample);
   // Adds the means of another film of the same size and layers, all of them sums: its values are
-  // scaled to this film's counts, which stay. What has no samples in one of the two films has none
-  // afterwards.
+  // scaled to this film's counts, which stay. A pixel without samples in one of the two films has
+  // none afterwards.
   void addMeans(const LayerFilm& other);
 
-  // As Film::add(), part() and archive(). Both films have the same layers.
+  // The same as Film::add(), part() and archive(). Both films have the same layers.
   void add(const LayerFilm& part, int x, int y);
   void copyPixels(const LayerFilm& from, const PixelRect& rect);
   LayerFilm part(const PixelRect& rect) const;
@@ -63,8 +63,8 @@ class LayerFilm {
   std::vector<glm::dvec3> values_;  // [pixel][half][layer]
 };
 
-// What a denoiser reads besides the image: direct light and the first surface, with FirstHit::seen
-// as its albedo, as the means of the two halves of each pixel's samples (Film).
+// The input of a denoiser besides the image: direct light and the first surface, with
+// FirstHit::seen as its albedo, as the means of the two halves of each pixel's samples (Film).
 
 class FeatureFilm {
  public:
@@ -73,11 +73,11 @@ class FeatureFilm {
 
   bool empty() const { return pixels_.empty(); }
 
-  // A sample whose radiance is `radiance`. Thread-safe for different pixels.
+  // Adds a sample whose radiance is `radiance`. Thread-safe for different pixels.
   void add(int x, int y, int half, const FirstHit& first, const Rgb& radiance);
-  // As Film::weigh().
+  // The same as Film::weigh().
   void weigh(double weight);
-  // As Film::add(), part() and archive().
+  // The same as Film::add(), part() and archive().
   void add(const FeatureFilm& part, int x, int y);
   void copyPixels(const FeatureFilm& from, const PixelRect& rect) {
     if (!empty()) rect.copy(from.pixels_, pixels_, width_);

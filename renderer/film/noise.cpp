@@ -180,7 +180,7 @@ namespace {
 constexpr int kAllocationReach = 2;  // windows are 5 x 5 pixels, without the one in the middle
 constexpr float kMaxRate = 64;       // keeps the work of a tile bounded
 constexpr double kMaxCount = 4e9;    // of a pixel
-constexpr uint64_t kPixelsPerMeter = 256;  // one of them measures the exposure
+constexpr uint64_t kPixelsPerMeter = 256;  // one of so many measures the exposure
 
 // Gaussian with a standard deviation of one pixel.
 double windowWeight(int dx, int dy) {
@@ -239,7 +239,7 @@ SampleAllocation::SampleAllocation(const PixelErrors& pilot, uint32_t pilotSampl
     for (int x = 0; x < pilot.width; ++x) {
       const size_t i = index(x, y);
       if (isMeter(i)) continue;
-      // The weights of the neighbours depend on this pixel; the others' do not.
+      // The weights of the neighbours depend on this pixel; other weights do not.
       double others = total, count = double(weights.size());
       forNeighbors(pilot, x, y, [&](size_t j, int, int) { others -= weights[j], --count; });
       if (others > 1e-12 * total)

@@ -16,13 +16,14 @@ namespace chromeball {
 struct PixelErrors {
   int width = 0, height = 0;
   std::vector<double> luminances;
-  // From the difference of the pixel's two independent halves: unbiased, one degree of freedom.
+  // Estimated from the difference of the pixel's two independent halves: unbiased, one degree of
+  // freedom.
   std::vector<glm::dvec4> halves;
-  // From the sample variance, as if the samples were independent: precise, but too large, since
-  // they are quasi-random.
+  // Estimated from the sample variance, as if the samples were independent: precise, but too large,
+  // since they are quasi-random.
   std::vector<glm::dvec4> scatter;
 
-  // Adds the squared errors of `other`: those of the sum or difference of two independent images.
+  // Adds the squared errors of `other`, as for the sum or difference of two independent images.
   void add(const PixelErrors& other);
 };
 
@@ -34,7 +35,7 @@ struct PixelErrors {
 // background).
 std::vector<glm::dvec4> squaredStandardErrors(const PixelErrors& errors);
 
-// Red, green and blue of such estimates as an image; NaN and infinities stay.
+// The red, green and blue components of such estimates as an image; NaN and infinities stay.
 Image varianceImage(const std::vector<glm::dvec4>& squaredErrors, int width, int height);
 inline Image varianceImage(const PixelErrors& errors) {
   return varianceImage(squaredStandardErrors(errors), errors.width, errors.height);
@@ -65,7 +66,7 @@ NoiseQuantiles noiseQuantiles(const PixelErrors& errors,
 // samples: its weight, the normalization of the weights and the exposure all exclude it.
 class SampleAllocation {
  public:
-  // As many samples everywhere; to be read from an archive.
+  // An equal number of samples everywhere; to be read from an archive.
   SampleAllocation(int width, int height)
       : width_(width), rates_(size_t(width) * size_t(height), 1.0f) {}
   // `pilotSamples`: per pixel. `leastRate`: every pixel takes at least so many of the samples that

@@ -12,7 +12,7 @@ namespace chromeball {
 struct Rows {
   int begin = 0, count = 0;
 
-  // What a list with `perRow` items for each row of the image has for these rows.
+  // The items for these rows, of a list with `perRow` items for each row of the image.
   template <class T>
   std::span<T> of(std::vector<T>& items, size_t perRow) const {
     return std::span(items).subspan(size_t(begin) * perRow, size_t(count) * perRow);
@@ -23,7 +23,7 @@ struct Rows {
 struct PixelRect {
   int x, y, width, height;
 
-  // Copies of each of these pixels `perPixel` items of an image that is `across` pixels wide.
+  // Copies `perPixel` items for each of these pixels, in an image that is `across` pixels wide.
   template <class T>
   void copy(const std::vector<T>& from, std::vector<T>& to, int across, size_t perPixel = 1) const {
     for (int row = y; row < y + height; ++row) {
@@ -33,7 +33,7 @@ struct PixelRect {
     }
   }
 
-  // The items of these pixels alone.
+  // Only the items of these pixels.
   template <class T>
   std::vector<T> of(const std::vector<T>& items, int across, size_t perPixel = 1) const {
     std::vector<T> part;
@@ -48,7 +48,7 @@ struct PixelRect {
   }
 };
 
-// Some megabytes of sums each.
+// Each band has some megabytes of sums.
 struct Bands {
   int width, height;
 
@@ -66,7 +66,7 @@ struct Bands {
 // The pixels of a square window of an image.
 
 // Calls visit(index, dx, dy) for the pixels at most `reach` columns and rows from (x, y), itself
-// included, in reading order. `index`: of the pixel in the image.
+// included, in reading order. `index`: the pixel's index in the image.
 template <class Visit>
 void forWindow(int width, int height, int x, int y, int reach, const Visit& visit) {
   for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
@@ -91,7 +91,7 @@ struct TileGrid {
     return {left, top, std::min(kSize, width - left), std::min(kSize, height - top)};
   }
 
-  // In scanline order.
+  // Visits pixels in scanline order.
   template <class Visit>
   void forPixels(size_t tile, const Visit& visit) const {
     const PixelRect rect = rectOf(tile);

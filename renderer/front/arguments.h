@@ -22,17 +22,18 @@ LightUnits parseLightUnits(const NamedSetting& setting);
 // "A,B" or "A,B,C": exactly `count` finite numbers. Throws InputError, begun by `location`.
 std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view location);
 
-// The positive floats, for messages; and whether a number is one of them.
+// The range of positive floats, for messages; and whether a number is in it.
 inline constexpr const char* kPositiveFloats = "1.4e-45 to 3.4e38, the range of a float";
 bool isPositiveFloat(double number);
 
-// A number for all channels, or three; and from the text "X" or "R,G,B", each 0 or a positive
-// float. Throws InputError, begun by `location`.
+// A colour from a number for all channels, or three; and from the text "X" or "R,G,B", each 0 or a
+// positive float. Throws InputError, begun by `location`.
 glm::dvec3 colorOf(const std::vector<double>& numbers);
 Rgb parseColor(std::string_view text, std::string_view location);
 
-// A yaw in degrees; or yaw, pitch and roll; or a quaternion x, y, z, w, whose length should be 1 to
-// 1%: four angles by mistake are not one. Throws InputError, begun by `location`.
+// A rotation from a yaw in degrees; from yaw, pitch and roll; or from a quaternion x, y, z, w,
+// whose length must be 1 within 1%, so that four angles are not taken for one. Throws InputError,
+// begun by `location`.
 Rotation parseRotation(const std::vector<double>& numbers, std::string_view location);
 // The same from numbers with commas between.
 Rotation parseRotation(std::string_view text, std::string_view location);

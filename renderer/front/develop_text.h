@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is to be developed (image/develop/develop.h), as options of `chromeball image develop` and
+// The steps of developing (image/develop/develop.h), as options of `chromeball image develop` and
 // as the setting `develop` of a render.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace chromeball {
 void setDevelop(DevelopSettings& settings, std::string_view name, std::string_view text,
                 std::string_view location);
 
-// All of "bloom=.75:1,.25:32 vignette=.4". Throws InputError, begun by `location`.
+// Sets all of "bloom=.75:1,.25:32 vignette=.4". Throws InputError, begun by `location`.
 DevelopSettings parseDevelop(std::string_view text, std::string_view location);
 
 }  // namespace chromeball

@@ -29,8 +29,8 @@ void planReflectance(const Settings& s, RenderDescription& description) {
   }
 }
 
-// What a compositor needs is always written: plate x (1 - alpha) x ratio + objects, or plate x (1 -
-// alpha) + objects + difference.
+// The layers that a compositor needs are always written: plate x (1 - alpha) x ratio + objects, or
+// plate x (1 - alpha) + objects + difference.
 void planShadowCatcher(const Settings& s, RenderDescription& description) {
   CompositeDescription& composite = *description.composite;
   composite.mode = CompositeMode::ShadowCatcher;

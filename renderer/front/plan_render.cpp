@@ -48,7 +48,7 @@ SingleSided singleSidedNamed(const std::string& name) {
                            : SingleSided::Camera;
 }
 
-// The layers of plain renders; those of composites are in CompositeDescription.
+// The layers of plain renders; the layers of composites are in CompositeDescription.
 std::vector<Aov> layersOf(const SceneFile& file) {
   std::vector<Aov> layers;
   const std::string location = file.settings.location("output.aovs");
@@ -188,7 +188,7 @@ RunDescription plannedRun(const Settings& s) {
           .isOfFrames = s.has("frames")};
 }
 
-// What a .png clips is relative to its white.
+// A .png clips relative to its white.
 DevelopSettings plannedDevelop(const Settings& s, float exposure) {
   const auto text = s.getIfGiven<std::string>("output.develop");
   if (!text) return {};

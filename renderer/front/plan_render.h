@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a scene file and given settings to the description of a render.
+// Turns a scene file and given settings into the description of a render.
 #pragma once
 
 #include "description/render_description.h"

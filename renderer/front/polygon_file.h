@@ -8,8 +8,8 @@
 
 namespace chromeball {
 
-// {"probe", "polygons": [{"probe_polygon": [[u, v], ...], ...}, ...]}; other members are ignored.
-// Throws InputError for a file that is no such list.
+// Reads {"probe", "polygons": [{"probe_polygon": [[u, v], ...], ...}, ...]}; other members are
+// ignored. Throws InputError for a file that is no such list.
 std::vector<PolygonCorners> readPolygons(const std::filesystem::path& path);
 
 // Also writes each source's solid angle, radiance and irradiance. Throws RunError.

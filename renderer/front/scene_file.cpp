@@ -34,7 +34,7 @@ vec3 readScale(const Entry& entry) {
   return scale;
 }
 
-// `name`: of the model in the description.
+// `name`: the model's in the description.
 ModelEntry readModel(const Entry& entry, const std::string& name, Origins& origins) {
   if (entry.node->is_string()) return {existingFile(entry), {}, {}};
   if (!entry.node->is_table()) entry.mustBe("a file name or a table");
@@ -83,7 +83,7 @@ void readProbeTurns(const Entry& keys, SceneFile& scene) {
   });
 }
 
-// Takes `scale = "plate"` out of [probe]; nullopt if it is a number. The location.
+// Takes `scale = "plate"` out of [probe]; nullopt if it is a number. Returns the location.
 std::optional<std::string> takePlateScale(const std::string& path, toml::table& table) {
   toml::table* probe = table["probe"].as_table();
   const toml::node* scale = probe ? probe->get("scale") : nullptr;
@@ -163,7 +163,7 @@ void applyToModels(const Settings& over, SceneFile& file) {
   }
 }
 
-// Before the first key and after the last one constant.
+// The rotation at a time; constant before the first key and after the last one.
 std::vector<double> rotationAt(const std::vector<ProbeTurn>& keys, double seconds) {
   const auto after = std::upper_bound(keys.begin(), keys.end(), seconds,
                                       [](double t, const auto& key) { return t < key.seconds; });

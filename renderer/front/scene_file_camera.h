@@ -14,13 +14,13 @@ namespace chromeball {
 // Throws InputError.
 void readCamera(const Section& section, SceneFile& scene);
 
-// Replaces the camera of `scene` by that of a file with nothing but [camera] with `position` and
-// `look_at`, as `chromeball camera solve` writes it. Throws InputError.
+// Replaces the camera of `scene` by the camera of a file with nothing but [camera] with `position`
+// and `look_at`, as `chromeball camera solve` writes it. Throws InputError.
 void readCameraFile(const std::string& path, SceneFile& scene);
 
 // Writes cameras to files with a section [camera], which scene files name.
 
-// Atomically, with a comment line for each of `comments`. Throws RunError.
+// Writes atomically, with a comment line for each of `comments`. Throws RunError.
 void writeCameraFile(const std::string& path, const SolvedCamera& camera,
                      const std::vector<std::string>& comments);
 

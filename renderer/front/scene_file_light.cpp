@@ -105,7 +105,7 @@ Rotation readProbeRotation(const Entry& entry) {
   return parseRotation(rotation.numbers(), entry.location());
 }
 
-// Lights with an angle become suns; those without, directional lamps.
+// Lights with an angle become suns; lights without one, directional lamps.
 std::vector<Lamp> readList(const Section& light, const std::string& name,
                            std::vector<std::string>& files) {
   const Rotation rotation = readProbeRotation(light["rotation"]);

@@ -9,14 +9,14 @@
 
 namespace chromeball {
 
-// A frame is a still, with settings that say when it is and where the camera has turned to.
+// A frame is a still, with settings for its time and for the turn of the camera.
 struct SequenceFrame {
   int number;
   SceneFile scene;  // with the frame's number in the names of output files
   Settings given;   // over the scene's, as for planJob()
 };
 
-// The frames that `--frames` names, or that of them which `--frame` names. Frame k is at k / fps
+// The frames that `--frames` names, or the one of them that `--frame` names. Frame k is at k / fps
 // seconds. The camera turns by (k - first) / (last + step - first) of `orbit`, so that a last turn
 // of the same size would close a circle.
 class Sequence {
@@ -26,7 +26,7 @@ class Sequence {
 
   const std::vector<int>& numbers() const { return numbers_; }  // empty: a still
   SequenceFrame frame(int number) const;                        // throws InputError
-  Messages messages() const;  // what of the scene file has no effect on frames
+  Messages messages() const;  // about keys of the scene file without effect on frames
 
  private:
   const SceneFile& scene_;

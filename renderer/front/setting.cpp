@@ -65,7 +65,7 @@ double parseNumber(const Setting& setting, std::string text, const std::string& 
   return number;
 }
 
-// With commas between; an empty one is refused.
+// Numbers separated by commas; an empty one is refused.
 std::vector<double> parseList(const Setting& setting, const std::string& text,
                               const std::string& location) {
   std::vector<double> numbers;

@@ -33,7 +33,7 @@ enum class SettingType {
   Compound,  // a structured key with its own reader; `form` describes it
 };
 
-// Of an Integer, a Number or the elements of Numbers or of a Compound.
+// The range of an Integer, of a Number, or of the elements of Numbers or a Compound.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -71,7 +71,7 @@ struct Setting {
   Effect effect = Effect::Image;
   bool renderOnly = false;  // not an option of `chromeball compare`, which varies or ignores it
 
-  // "render.samples"; the option if there is no key.
+  // The name: "render.samples"; the option if there is no key.
   std::string name() const;
 };
 

@@ -32,7 +32,7 @@ std::span<const SettingSection> settingSections();
 // The keys of a section, in the table's order.
 std::vector<std::string_view> keysOf(std::string_view section);
 
-// By its name ("render.samples", "clamp"). Throws std::logic_error if there is none.
+// The setting with a name ("render.samples", "clamp"). Throws std::logic_error if there is none.
 const Setting& settingNamed(std::string_view name);
 
 // nullptr if the section has no such key.
@@ -67,7 +67,7 @@ class Settings {
   void parse(std::string_view name, const std::string& text);
 
   void erase(std::string_view name);
-  void merge(const Settings& over);  // values of `over` replace those of this
+  void merge(const Settings& over);  // values of `over` replace this one's
 
   bool has(std::string_view name) const { return find(name) != nullptr; }
   const Given* find(std::string_view name) const;  // nullptr if not given

@@ -20,7 +20,7 @@ struct TileEntry {
 // given) and fov. Files are relative to the list. Throws InputError "FILE:LINE: ...".
 std::vector<TileEntry> readTiles(const std::string& path);
 
-// The same list with other poses, in a folder of its own. Throws RunError.
+// Writes the same list with other poses, in another folder. Throws RunError.
 void writeTiles(const std::string& path, const std::vector<TileEntry>& tiles);
 
 }  // namespace chromeball

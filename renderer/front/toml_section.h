@@ -64,7 +64,7 @@ class Section {
  public:
   // `section`: its name in the table of settings.
   Section(const std::string& file, std::string section, const toml::table& table);
-  // The whole file: `keys` are those of its tables.
+  // The whole file: `keys` are the names of its tables.
   Section(const std::string& file, const toml::table& table,
           const std::vector<std::string_view>& keys);
 
@@ -74,7 +74,7 @@ class Section {
   Entry required(std::string_view key) const;
   std::string location() const { return fmt::format("{}:{}", file_, table_.source().begin.line); }
 
-  // As it is written in the file: [probe], [[light]].
+  // The heading as written in the file: [probe], [[light]].
   std::string heading() const;
 
   // A table within this one; an empty one if it is missing.
@@ -110,8 +110,8 @@ std::string existingFile(const Entry& entry, std::string_view relativeTo = "the 
 // Throws InputError for a file that is not valid TOML.
 toml::table parseToml(const std::string& path);
 
-// Bounds the nesting of dotted keys before TOML is parsed: toml++ bounds that of values only, and
-// walks the tables that keys make recursively.
+// Bounds the nesting of dotted keys before TOML is parsed: toml++ bounds the nesting of values
+// only, and walks the tables that keys make recursively.
 
 // Throws InputError, begun by `path` and the line, for a key of more than 16 parts (`a.b.c` has 3),
 // as a header or anywhere else. Text that is not valid TOML passes, or fails with a line.

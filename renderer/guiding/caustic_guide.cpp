@@ -64,7 +64,8 @@ CausticLobes::CausticLobes(std::span<Photon> photons) {
   }
 }
 
-// One lobe, or those of the quarters of the square of the probe that the photons came from.
+// Makes one lobe, or the lobes of the quarters of the square of the probe that the photons came
+// from.
 void CausticLobes::divide(std::span<Photon> photons, vec2 corner, float size, double total,
                           std::vector<Lobe>& lobes) const {
   if (photons.empty()) return;

@@ -21,7 +21,7 @@ namespace chromeball {
 // 1 / pi at most, a GGX lobe of roughness 0.45 has 2.)
 inline constexpr float kConcentratedPdf = 2;
 
-// Where such a path arrives at a rough surface.
+// The arrival of such a path at a rough surface.
 struct Photon {
   vec3 position, normal;
   vec3 direction;  // unit, towards the last surface that reflected or refracted the light
@@ -87,7 +87,7 @@ class CausticLobes {
 
 // Light that was found behind a bounce where the guide has lobes.
 struct BounceRecord {
-  float found;              // |luminance| of what the path added to its pixel's sample
+  float found;              // |luminance| that the path added to its pixel's sample
   float lobesPdf, bsdfPdf;  // of the bounce
   float fraction;           // of such bounces that came from the lobes
 };
@@ -106,7 +106,7 @@ class CausticGuide {
     return region.empty() ? nullptr : &region;
   }
 
-  // Of the bounces in regions with lobes, those whose direction comes from the lobes.
+  // The fraction of bounces in regions with lobes that take their direction from the lobes.
   float fraction() const { return fraction_; }
   static constexpr float kTrainingFraction = 0.25f;
   void setFraction(float fraction) { fraction_ = fraction; }

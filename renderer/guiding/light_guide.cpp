@@ -13,13 +13,13 @@ namespace {
 constexpr int kMaxDepth = 10;              // 2^-20 of the sphere, less than the Sun's disc
 constexpr double kLargestFraction = 0.01;  // of the whole weight, in a square that is not divided
 constexpr size_t kMinPoints = 24;          // in a square that is divided
-// Of a square's weight, spread evenly over its quarters: few points do not prove that a direction
-// is dark.
+// The share of a square's weight that is spread evenly over its quarters: few points do not prove
+// that a direction is dark.
 constexpr double kSpread = 0.03;
 constexpr size_t kMaxNodes = 4096;  // keeps indices in 16 bits
 
 // Chooses one of two intervals, with probabilities p and 1 - p; u becomes uniform in it. Multiplies
-// the density by that of the interval relative to equal probabilities.
+// the density by the interval's density relative to equal probabilities.
 int choose(float p, float& u, float& density) {
   const int side = u >= p;
   const float s = float(side);  // without branches, which could not be predicted
@@ -119,14 +119,14 @@ float DirectionTree::pdf(const vec3& direction) const {
 namespace {
 
 constexpr size_t kMinRecords = 1000;  // of a region that is the half of another
-constexpr size_t kMinToGuide = 100;   // fewer leave light that none of them found to fireflies
+constexpr size_t kMinToGuide = 100;   // with fewer, light that none found becomes fireflies
 constexpr std::array kFractions = {1.0f, 0.5f, 0.25f, 0.1f, 0.02f};  // of the strategy's samples
 // A guided light sample takes up to twice the time.
 constexpr double kMaxMomentRatio = 0.7;
 
 using Records = std::span<const LightRecord>;
 
-// Of every `step`-th record, beginning with the first.
+// The tree of every `step`-th record, beginning with the first.
 DirectionTree treeOf(Records records, size_t step) {
   std::vector<DirectionTree::Point> points;
   points.reserve(records.size() / step + 1);
@@ -152,8 +152,8 @@ void addMoments(Records records, const DirectionTree& tree,
 
 }  // namespace
 
-// Each half of the records judges the tree of the other half: a tree seems better than it is on
-// the records that it was made of.
+// Each half of the records judges the tree of the other half: on the records that it was made from,
+// a tree seems better than it is.
 GuideRegion::GuideRegion(std::span<const LightRecord> records) {
   if (records.size() < kMinToGuide) return;
   std::array<double, kFractions.size()> moments{};

@@ -71,7 +71,7 @@ struct LightRecord {
   vec3 position, normal;  // of the vertex
   vec3 direction;         // unit, towards the light
   float integrand;        // f cos L, luminance
-  float density;          // with which both techniques together sampled the direction, pdf
+  float density;          // pdf of the direction by both techniques together
   float strategyPdf;      // of the strategy's light samples, without the guide
   float bsdfPdf;
 };
@@ -81,7 +81,7 @@ struct LightRecord {
 class GuideRegion {
  public:
   GuideRegion() = default;
-  // Learns the tree, and which fraction of light samples the strategy keeps.
+  // Learns the tree, and the fraction of light samples that the strategy keeps.
   explicit GuideRegion(std::span<const LightRecord> records);
 
   bool isGuided() const { return strategyFraction_ < 1; }

@@ -60,8 +60,8 @@ class RegionTree {
     const uint32_t axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
     return 2 * axis + (n[int(axis)] < 0);
   }
-  // Reorders the records for a split of the node along the longest axis that allows one; the first
-  // that is above it, or the first of all if there is none.
+  // Reorders the records for a split of the node along the longest axis that allows one; returns
+  // the first record above it, or the first of all if no axis allows one.
   template <class Record>
   auto split(size_t node, std::span<Record> records, size_t minRecords);
   template <class Record>

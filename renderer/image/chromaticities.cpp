@@ -20,7 +20,7 @@ bool isFiniteMatrix(const dmat3& m) {
   return true;
 }
 
-// From RGB to XYZ, in which the white has luminance 1 (SMPTE RP 177).
+// The matrix from RGB to XYZ, with the white at luminance 1 (SMPTE RP 177).
 std::optional<dmat3> rgbToXyz(const Chromaticities& space) {
   const auto lifted = [](const dvec2& xy) { return dvec3(xy, 1 - xy.x - xy.y); };
   const dmat3 primaries(lifted(space.red), lifted(space.green), lifted(space.blue));
@@ -48,7 +48,8 @@ bool isClose(const dvec2& a, const dvec2& b) {
   return std::abs(a.x - b.x) < kTolerance && std::abs(a.y - b.y) < kTolerance;
 }
 
-// CIE XYZ itself, which measures light: its "white" is not that of a viewer, who would adapt to it.
+// Whether this is CIE XYZ itself, which measures light: its "white" is none that a viewer would
+// adapt to.
 bool isXyz(const Chromaticities& space) {
   return isClose(space.red, {1, 0}) && isClose(space.green, {0, 1}) && isClose(space.blue, {0, 0});
 }

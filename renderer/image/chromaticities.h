@@ -20,7 +20,7 @@ struct Chromaticities {
   bool operator==(const Chromaticities&) const = default;
 };
 
-// To three decimals, as files state it.
+// Compares to three decimals, as files state chromaticities.
 bool isRec709(const Chromaticities& space);
 
 // The matrix that converts linear RGB to linear Rec. 709, with the white adapted to D65 by
@@ -32,7 +32,7 @@ std::optional<glm::dmat3> toRec709(const Chromaticities& space);
 // Converts the first three channels.
 void convertColor(Image& image, const glm::dmat3& matrix);
 
-// That the colour of a file is converted to Rec. 709 from these primaries.
+// The note that the colour of a file is converted to Rec. 709 from these primaries.
 Message conversionNote(const std::filesystem::path& path, const Chromaticities& from);
 
 }  // namespace chromeball

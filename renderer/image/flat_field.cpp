@@ -11,7 +11,8 @@
 namespace chromeball {
 namespace {
 
-// How far the polynomial is continued: a source is inside the image, so no sample is in a corner.
+// The distance up to which the polynomial is extrapolated: a source is inside the image, so no
+// sample is in a corner.
 constexpr double kReach = 1.1;
 
 dvec2 pixelCentre(int x, int y) { return {x + 0.5, y + 0.5}; }

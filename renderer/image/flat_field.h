@@ -11,7 +11,7 @@ namespace chromeball {
 using glm::dvec2;
 using glm::dvec3;
 
-// The radiance that a camera recorded of a constant source that it saw at `position` (pixels).
+// The radiance that a camera recorded from a constant source at `position` (pixels).
 struct SourceSample {
   dvec2 position;
   dvec3 radiance;
@@ -45,7 +45,7 @@ FlatField fitFlatField(std::span<const SourceSample> samples, int width, int hei
                        const dvec2& centre);
 
 // a / b, channel by channel; 0 where b is not above 0. Three channels, of one size. Returns the
-// number of pixels that are 0 for that.
+// number of pixels that are 0 for this reason.
 size_t divide(Image& a, const Image& b);
 
 }  // namespace chromeball

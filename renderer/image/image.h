@@ -35,12 +35,12 @@ struct Image {
 
 // Images of another size.
 
-// With a box filter: each pixel has the mean of what it covers. An image of the requested size is
-// returned unchanged.
+// Resampled with a box filter: each pixel is the mean of the area that it covers. An image of the
+// requested size is returned unchanged.
 Image resampled(const Image& image, int width, int height);
 
-// The image as it is to be seen, of one that is stored with this orientation (EXIF and TIFF, tag
-// 274: 1 to 8; 6 is to be turned clockwise). Others leave it as it is.
+// The image as it is to be seen, from an image stored with this orientation (EXIF and TIFF, tag
+// 274: 1 to 8; 6 is to be turned clockwise). Other numbers leave it unchanged.
 Image oriented(Image stored, int orientation);
 
 }  // namespace chromeball

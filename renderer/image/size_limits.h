@@ -30,10 +30,10 @@ inline void checkImageSize(const std::filesystem::path& path, int64_t width, int
                path.string(), width, height, channels, maxNumbers);
 }
 
-// Throws InputError if an image with these numbers, of `bytes` each, and what is made of it do not
-// fit into the memory that the process may use: for whole images that are read from a file or made
-// for one, before they are allocated. `copies`: as read, as converted, and as written or prepared
-// for look-ups. Small images are left to the allocator.
+// Throws InputError if an image with these numbers, of `bytes` each, and its copies do not fit into
+// the memory that the process may use. For whole images that are read from a file or made for one,
+// before they are allocated. `copies`: as read, as converted, and as written or prepared for
+// look-ups. Small images are left to the allocator.
 inline void checkImageMemory(const std::filesystem::path& path, int64_t width, int64_t height,
                              int64_t channels, size_t bytes = sizeof(float), double copies = 3) {
   constexpr double kAlwaysAllowed = 64 << 20;

@@ -190,7 +190,7 @@ AreaLights::AreaLights(const Probe& probe, std::unique_ptr<const LightAreas> are
 
 float AreaLights::pdf(const LightAreas::Found& found, int depth) const {
   if (samplesAll(depth)) return found.density;
-  // Of each light, power / (all power) x 1 / solid angle: in proportion to its radiance.
+  // Each light contributes power / (all power) x 1 / solid angle: in proportion to its radiance.
   return float(kLater * luminance(glm::dvec3(found.radiance)) / power_);
 }
 

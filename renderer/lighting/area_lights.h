@@ -34,7 +34,7 @@ class LightAreas {
 
   const std::vector<AreaLight>& lights() const { return lights_; }
 
-  // What all lights together have in a direction.
+  // The sum over all lights in a direction.
   struct Found {
     Rgb radiance{0};
     float density = 0;  // sum of 1 / solid angle: the pdf of one direction in each light
@@ -80,7 +80,7 @@ class DiscAreas : public LightAreas {
 // Area lights that are the regions of a lat-long map.
 
 // Each light has the energy of its region, the sum of radiance x solid angle over the texels; its
-// direction is the energy's centroid. Solid angles are exact: those of rectangles of texels. Black
+// direction is the energy's centroid. Solid angles are exact: sums over rectangles of texels. Black
 // regions make no lights.
 class RegionAreas : public LightAreas {
  public:

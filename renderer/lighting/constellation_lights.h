@@ -6,10 +6,10 @@
 
 namespace chromeball {
 
-// By energy for a count, by levels for a number of levels.
+// Cut by energy if a count is given, by levels if a number of levels is given.
 LightingMethod::Lights medianCutLights(CountRange counts);
 
-// By levels, with lights at the regions' centres; of the map as a flat picture.
+// Cut by levels: lights at the regions' centres; and a cut of the map as a flat picture.
 LightingMethod::Lights centreCutLights(CountRange counts);
 LightingMethod::Lights flatCutLights(CountRange counts);
 

@@ -83,7 +83,7 @@ class ShownLights : public LightSource {
                     std::span<Rgb> radiances) const override {
     strategy_->splitEscaped(point, wi, radiances);
   }
-  // The last group is what the camera and mirrors see.
+  // The last group holds what the camera and mirrors see.
   void splitBackground(const vec3& origin, const vec3& wi,
                        std::span<Rgb> radiances) const override {
     radiances.back() += background(origin, wi);
@@ -95,7 +95,7 @@ class ShownLights : public LightSource {
   Rgb ambient_;
 };
 
-// Lights of no extent as lights to show, turned.
+// Turns lights of no extent into lights to show, rotated.
 std::vector<AreaLight> shownLights(const Constellation& lights, const Rotation& rotation);
 
 }  // namespace chromeball

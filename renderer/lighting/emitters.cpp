@@ -46,7 +46,7 @@ double meanEmission(const Scene& scene, const Material& m) {
   return mean * meanAlpha(scene, m);
 }
 
-// The end of a shadow ray from `origin` towards a point of the surface that faces it: off what lies
+// The end of a shadow ray from `origin` towards a point of the surface that faces it: off surfaces
 // in its plane, and farther if the ray is long. The rounding errors of the ray grow with its
 // length, and not with the surface's coordinates, which are 0 in a coordinate plane.
 vec3 endOfRay(const Surface& surface, float planeOffset, const vec3& origin) {

@@ -17,8 +17,8 @@ namespace chromeball {
 //
 // While the shutter is open, a triangle is chosen by the area that it has when it opens.
 //
-// A call of sample() gives one sample. Its radiance is that of the point times its alpha, with
-// which a BSDF-sampled ray hits it.
+// A call of sample() gives one sample. Its radiance is the point's radiance times its alpha, the
+// probability that a BSDF-sampled ray hits it.
 class Emitters : public LightSource {
  public:
   // Null if nothing emits. The scene must outlive this.
@@ -47,7 +47,7 @@ class Emitters : public LightSource {
 
  private:
   vec3 placeOf(const Point& point, const Instance& instance, float time) const;
-  // Of the area by which a triangle was chosen to the area that it has at the surface's time.
+  // The ratio of the area by which a triangle was chosen to its area at the surface's time.
   float areaRatio(const Surface& surface, const Instance& instance) const;
   struct EmissiveTriangle {
     uint32_t instance, triangle;

@@ -51,7 +51,7 @@ void FiniteSurroundings::splitEscaped(const LightPoint& point, const vec3& wi,
   strategy_->splitEscaped(point, glm::normalize(y.position - surroundings_.capture), radiances);
 }
 
-// The probe's radiance, in the proportions of what the strategy sees.
+// The probe's radiance, split in the proportions of the strategy's groups.
 void FiniteSurroundings::splitBackground(const vec3& origin, const vec3& wi,
                                          std::span<Rgb> radiances) const {
   const Surroundings::Point y = behind(origin, wi);

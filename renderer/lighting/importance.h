@@ -38,7 +38,7 @@ class Importance : public LightSource {
 
   const LuminanceField& field() const { return field_; }
 
-  // The tables: of the rows of cells by `v`, and of the cells in each row by `u`.
+  // The tables: rows() samples the rows of cells by `v`, columns() the cells of each row by `u`.
   const CdfRows& rows() const { return rows_; }
   const CdfRows& columns() const { return columns_; }
 

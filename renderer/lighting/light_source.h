@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interface of light sources: the light of a probe, in any way of sampling it, and what else
-// lights a scene.
+// The interface of light sources: the light of a probe, sampled in any way, and all other light of
+// a scene.
 #pragma once
 
 #include <cmath>
@@ -50,7 +50,7 @@ struct DirectionSample {
   LightEnd end{};
 };
 
-// Light of a probe, as a strategy samples it, or of what a scene has besides (scene_sources.h):
+// Light of a probe, as a strategy samples it, or of a scene's other sources (scene_sources.h):
 // lamps and emitting surfaces, which override less, and suns.
 class LightSource {
  public:
@@ -114,9 +114,9 @@ class LightSource {
   virtual bool unbiased() const { return true; }
 
   // The names of the parts of the light that light groups tell apart (transport/light_groups.h).
-  // Surfaces in the scene have none: their groups are those of their nodes.
+  // Surfaces in the scene have none: they belong to their nodes' groups.
   virtual std::vector<std::string> groups() const { return {"probe"}; }
-  // Adds the radiance of escaped(), or of background(), to that of each group: one element of
+  // Splits the radiance of escaped(), or of background(), by group and adds it: one element of
   // `radiances` per group.
   virtual void splitEscaped(const LightPoint& point, const vec3& wi,
                             std::span<Rgb> radiances) const {

@@ -10,8 +10,8 @@
 namespace chromeball {
 
 // w = max(luminance - offset, 0) x sin(theta) at the corners of the probe's cells, interpolated
-// bilinearly between them; with offset 0 positive wherever the radiance is. The corresponding pdf
-// over solid angle is w / (integral of w over the map, in cells, x jacobian x sin(theta)).
+// bilinearly between them; with offset 0 it is positive wherever the radiance is. The corresponding
+// pdf over solid angle is w / (integral of w over the map, in cells, x jacobian x sin(theta)).
 class LuminanceField {
  public:
   explicit LuminanceField(const Probe& probe, float offset = 0)
@@ -90,8 +90,8 @@ class LuminanceField {
 
 // The luminance field divided into blocks of cells that can be sampled separately.
 
-// At most 32 x 16 blocks. All blocks share the running sums along rows of cells and along columns
-// of blocks.
+// A field of at most 32 x 16 blocks. All blocks share the running sums along rows of cells and
+// along columns of blocks.
 class BlockedField {
  public:
   explicit BlockedField(const Probe& probe);
@@ -114,7 +114,7 @@ class BlockedField {
     return field_.at(direction, p);
   }
 
-  // Factor from a point's weight to its pdf over solid angle, when sampling the whole field.
+  // The factor from a point's weight to its pdf over solid angle, when sampling the whole field.
   float scale() const { return scale_; }
 
   // 16 directions spread over a block.

@@ -32,7 +32,7 @@ Strategy sampling(const Probe& probe, const StrategyOptions&, int) {
   return std::make_unique<Sampler>(probe);
 }
 
-// With MIS compensation if MIS is on.
+// The sampler with MIS compensation if MIS is on.
 template <class Sampler>
 Strategy compensated(const Probe& probe, const StrategyOptions& options, int) {
   return std::make_unique<Sampler>(probe, options.mis != Mis::Off);

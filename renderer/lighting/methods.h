@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of lighting methods: those that sample a probe, and those that replace it by
+// The table of lighting methods: methods that sample a probe, and methods that replace it by
 // directional lights.
 #pragma once
 
@@ -24,7 +24,7 @@ struct CountRange {
 
 // Options of makeLights().
 struct LightRequest {
-  std::optional<int> count;  // of lights; cube-grid: of squares along a face's edge
+  std::optional<int> count;  // of lights; for cube-grid, of squares along a face's edge
   uint64_t seed = 0;         // for stochastic methods
   // For the fits: also fit a constant radiance from all directions; use the smallest number of
   // lights (at most `count`) whose mean error in percent does not exceed maxErrorPercent.
@@ -44,14 +44,14 @@ struct LightingMethod {
   std::string_view summary;  // one line, for help
   std::string_view source;   // author and year, or section; empty: none
 
-  // As a strategy for rendering: NAME, or NAME:COUNT.
+  // The method as a strategy for rendering: NAME, or NAME:COUNT.
   CountRange counts;
   std::function<std::unique_ptr<LightSource>(const Probe&, const StrategyOptions&, int count)>
       makeStrategy;
   bool isUnbiased = false;
   bool replacesProbe = false;  // by lights, which the camera can see (StrategyOptions::showLights)
 
-  // As directional lights that replace a lat-long map.
+  // The method as directional lights that replace a lat-long map.
   struct Lights {
     std::function<MadeLights(const Image& latLong, const LightRequest&)> make;  // empty: none
     CountRange counts;
@@ -60,7 +60,7 @@ struct LightingMethod {
     bool fitsAmbient = false, takesMaxError = false, takesLevels = false;
     // The irradiances sum to the map's radiance x solid angle, channel by channel.
     bool keepsEnergy = false;
-    // The regions that the same request's lights stand for; empty: it has none.
+    // The regions that the same request's lights stand for; empty: the method has none.
     std::function<LightRegions(const Image& latLong, const LightRequest&)> regions;
   } lights;
 };
@@ -82,7 +82,7 @@ MadeLights makeLights(std::string_view method, const Image& latLong, const Light
 // Throws InputError for an unknown method, or a count that is missing or out of range.
 void checkLightCount(std::string_view method, const LightRequest& request);
 
-// For --help: one line for each strategy, or for each method that makes lights.
+// Text for --help: one line for each strategy, or for each method that makes lights.
 std::string strategyHelp();
 std::string lightMethodHelp();
 

@@ -97,7 +97,7 @@ void PolygonLights::splitBackground(const vec3&, const vec3& wi, std::span<Rgb> 
   if (const Rgb hidden = hidden_.radiance(wi); !isBlack(hidden)) radiances[illumAt(wi)] += hidden;
 }
 
-// The illum that took what is hidden in this direction: the first that contains it; at its rim,
+// The illum that took the hidden light in this direction: the first that contains it; at its rim,
 // where texels reach over the edge, the nearest.
 size_t PolygonLights::illumAt(const vec3& wi) const {
   size_t nearest = 0;

@@ -23,8 +23,8 @@ struct PolygonLight {
 // against BSDF samples. Either way energy is counted once.
 class PolygonLights : public LightSource {
  public:
-  // `lights` is not empty. `hidden`: the map minus that without the illums, which the camera and
-  // mirrors see; unrotated.
+  // `lights` is not empty. `hidden`: the map of the illums, which only the camera and mirrors see:
+  // the whole map minus the map without the illums; unrotated.
   PolygonLights(const std::vector<PolygonLight>& lights, const Image& hidden,
                 const Rotation& rotation);
 
@@ -41,7 +41,7 @@ class PolygonLights : public LightSource {
   void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
 
  private:
-  // Of a polygon, which is not black, from two numbers in [0, 1).
+  // A sample of a polygon that is not black, from two numbers in [0, 1).
   struct Chosen {
     size_t light;
     vec3 wi;

@@ -12,7 +12,8 @@ namespace chromeball {
 
 // Normals are binned (squares of an octahedral map). Each bin has a distribution over the blocks of
 // the probe: luminance x the mean cosine between block and bin, positive wherever the cosine can
-// be. Within a block the pdf is proportional to luminance. So for every direction, as MIS needs,
+// be. Within a block the pdf is proportional to luminance. So for every direction the pdf is known,
+// as MIS requires:
 //   pdf = (pdf proportional to luminance) x pdfRatio(bin, block).
 // On a transmissive surface half of the samples use the opposite normal. The pdf does not follow
 // specular lobes; BSDF samples do.
@@ -30,7 +31,7 @@ class Product : public LightSource {
   DirectionSample sampleDirection(const LightPoint& point, double u, double v) const;
 
  private:
-  // `cosines`: for each block the mean cosine with the bin's normals.
+  // `cosines`: the mean cosine of each block with the bin's normals.
   void fillBin(int bin, const std::vector<double>& cosines);
   float pdfRatio(int bin, int block) const {
     return pdfRatios_[size_t(bin) * field_.blocks() + block];

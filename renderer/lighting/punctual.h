@@ -11,9 +11,9 @@
 namespace chromeball {
 
 // The light that arrives at `position` (KHR_lights_punctual): intensity / distance^2, times
-// max(min(1 - (distance / range)^4, 1), 0) for the range, and for a spot times
-// ((cos - cosOuter) / (cosInner - cosOuter))^2, clamped to [0, 1] before squaring. A delta light.
-// `time`: of the shutter.
+// max(min(1 - (distance / range)^4, 1), 0) for the range, and for a spot times ((cos - cosOuter) /
+// (cosInner - cosOuter))^2, clamped to [0, 1] before squaring. A delta light. `time`: within the
+// shutter interval.
 DirectionSample incidentLight(const PunctualLight& light, const vec3& position, float time = 0);
 
 class PunctualLights : public LightSource {

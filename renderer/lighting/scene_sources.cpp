@@ -100,7 +100,7 @@ LightSource::Escaped CombinedLight::escaped(const LightPoint& point, const vec3&
   return sum;
 }
 
-// Of one part, each with the same probability.
+// Samples one part; all parts have the same probability.
 bool CombinedLight::sampleDistant(const glm::uvec2& numbers, DirectionSample& out) const {
   const uint64_t scaled = uint64_t(numbers.x) * parts_.size();
   const auto& part = parts_[size_t(scaled >> 32)];

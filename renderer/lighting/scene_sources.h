@@ -13,12 +13,12 @@
 namespace chromeball {
 
 struct SceneSources {
-  // One for each kind of source that occurs in the scene, which must outlive this.
+  // Makes one source for each kind that occurs in the scene, which must outlive this.
   explicit SceneSources(const Scene& scene);
 
   std::vector<std::unique_ptr<const LightSource>> all;
-  std::vector<size_t> distant;         // of these: those that rays find which hit nothing
-  const Emitters* emitters = nullptr;  // of these: photons start there; null where nothing emits
+  std::vector<size_t> distant;         // indices of those that rays find if they hit nothing
+  const Emitters* emitters = nullptr;  // among `all`: photons start there; null if nothing emits
 };
 
 // Suns that a scene has besides its probe (HDRI book, sections 9.3.5 and 9.6.1).
@@ -46,7 +46,7 @@ class SceneSuns : public LightSource {
   std::vector<size_t> seen_;        // indices of the visible ones
 };
 
-// Constant radiance from all directions, as light lists have it (lighting/export/light_file.h).
+// Constant radiance from all directions, as in light lists (lighting/export/light_file.h).
 
 // Found by BSDF samples only, which for constant radiance are as good as light samples.
 class AmbientLight : public LightSource {
@@ -65,14 +65,14 @@ class AmbientLight : public LightSource {
   AmbientLamp lamp_;
 };
 
-// Light of several sources: a probe's strategy, and what a scene has besides its probe.
+// Light of several sources: a probe's strategy, and the other sources of a scene.
 
 // Takes the samples of every part. Radiances and pdfs of all parts are added in each direction, so
 // that all samples are combined by the balance heuristic (Veach 1997). It can be guided if the
 // first part can.
 class CombinedLight : public LightSource {
  public:
-  // The first part is that of the probe.
+  // The first part is the probe's.
   explicit CombinedLight(std::vector<std::unique_ptr<LightSource>> parts);
 
   void sample(const LightPoint& point, const PixelSampler& sampler,

@@ -14,7 +14,7 @@ namespace chromeball {
 // The cells of one region, sampled with probability proportional to their weights.
 class Stratum {
  public:
-  // To be called row by row. The weight must be positive.
+  // Add cells row by row. The weight must be positive.
   void add(int column, int row, double weight);
 
   double weight() const { return sums_.empty() ? 0 : sums_.back(); }
@@ -37,8 +37,8 @@ class Stratum {
   std::vector<double> sums_;  // of the weights up to and including this cell
 };
 
-// The regions are those of kollig-keller; they are small where the probe is bright. The first hit
-// takes one sample in each region, with pdf proportional to luminance. Later hits take kLater
+// The regions are the same as kollig-keller's; they are small where the probe is bright. The first
+// hit takes one sample in each region, with pdf proportional to luminance. Later hits take kLater
 // samples, in regions chosen with probability proportional to their energy.
 class Strata : public LightSource {
  public:

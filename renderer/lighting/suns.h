@@ -21,12 +21,12 @@ namespace chromeball {
 
 // Distant discs of constant radiance, such as suns.
 
-// Samples one direction in each disc, uniform over its solid angle 2 pi (1 - cos(angle / 2)). Of
+// Samples one direction in each disc, uniform over its solid angle 2 pi (1 - cos(angle / 2)). From
 // more than two discs, chooses one with probability proportional to power: with four suns this
 // needs 45% fewer rays for the same noise.
 class SkyDiscs {
  public:
-  // Turned, as a probe.
+  // The discs are turned, like a probe.
   explicit SkyDiscs(const std::vector<Sun>& suns, const Rotation& rotation = {});
 
   bool empty() const { return discs_.empty(); }
@@ -49,7 +49,7 @@ class SkyDiscs {
     }
   }
 
-  // Of all discs in a direction.
+  // The sum over all discs in a direction.
   struct Light {
     Rgb radiance{0};
     float pdf = 0;  // of sample(), over solid angle: the sum over its directions
@@ -101,7 +101,7 @@ class Suns : public LightSource {
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
   Rgb background(const vec3&, const vec3& wi) const override;
-  // Without suns this is `importance`.
+  // Without suns this is the same as `importance`.
   bool unbiased() const override { return discs_.empty(); }
   std::vector<std::string> groups() const override;
   void splitEscaped(const LightPoint& point, const vec3& wi,

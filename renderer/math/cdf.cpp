@@ -26,7 +26,8 @@ double CdfRows::setRow(int row, std::span<const double> weights) {
     sum += weights[i];
     if (weights[i] > 0) last = i;
   }
-  // Without this, rounding could leave a gap below 1 in which a column of zero weight is sampled.
+  // Without this, rounding could leave a gap below 1 where a column of zero weight would be
+  // sampled.
   for (int i = last + 1; i <= columns_; ++i) cdf[i] = 1;
 
   int column = 0;

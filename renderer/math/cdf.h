@@ -26,7 +26,7 @@ class CdfRows {
     return std::span(cdf_).subspan(size_t(row) * (columns_ + 1), size_t(columns_) + 1);
   }
 
-  // Fetch into the cache what sample() reads: first its range of columns, then the cdf there.
+  // These fetch into the cache what sample() reads: first its range of columns, then the cdf there.
   void prefetchGuide(int row, double u) const { __builtin_prefetch(guide(row, u)); }
   void prefetchCdf(int row, double u) const {
     __builtin_prefetch(&cdf_[size_t(row) * (columns_ + 1) + *guide(row, u)]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decompositions of dense matrices of doubles by Eigen, which take seconds to compile: here once,
-// in a file each of dense_*.cpp.
+// Decompositions of dense matrices of doubles by Eigen, which take seconds to compile: each is
+// compiled once, in a file of its own (dense_*.cpp).
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// Of a symmetric matrix: ascending eigenvalues, and unit eigenvectors as columns.
+// The eigensystem of a symmetric matrix: ascending eigenvalues, and unit eigenvectors as columns.
 struct SymmetricEigen {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
@@ -23,10 +23,10 @@ Eigen::MatrixXd normalMatrix(const Eigen::MatrixXd& jacobian);
 
 Eigen::MatrixXd inverseOf(const Eigen::MatrixXd& matrix);
 
-// x of matrix x = right, of a symmetric matrix that is positive or negative semidefinite.
+// The x with matrix x = right, for a symmetric matrix that is positive or negative semidefinite.
 Eigen::VectorXd solveSymmetric(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
-// x with the least |matrix x - right|.
+// The x with the least |matrix x - right|.
 Eigen::VectorXd solveLeastSquares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
 // Linear least squares by the normal equations: for problems of few unknowns and many rows, whose
@@ -40,7 +40,7 @@ class LeastSquares {
     int unknown;
     double coefficient;
   };
-  // One more equation: sum of coefficient x unknown = target; its error counts `weight` (>= 0)
+  // Adds an equation: sum of coefficient x unknown = target; its error counts `weight` (>= 0)
   // times.
   void add(std::span<const Term> row, double target, double weight = 1);
 
@@ -49,7 +49,8 @@ class LeastSquares {
   std::optional<std::vector<double>> solve() const;
 
   // The diagonal of the normal matrix's inverse: the variances of the unknowns where the targets of
-  // the equations have independent errors of variance 1 / weight. nullopt as of solve().
+  // the equations have independent errors of variance 1 / weight. nullopt where solve() gives
+  // nullopt.
   std::optional<std::vector<double>> variances() const;
 
  private:

@@ -65,8 +65,8 @@ int deepest(const std::vector<Triangle>& planes, const dvec3& direction) {
   return best;
 }
 
-// The index in quarters() of the quarter that the direction goes through: a corner's, beyond the
-// opposite edge of the middle one, or the middle one.
+// The index in quarters() of the quarter that the direction goes through: a corner's, if it is
+// beyond the opposite edge of the middle one, else the middle one.
 int quarterAt(const std::array<Triangle, 4>& parts, const dvec3& direction) {
   const auto& [ab, bc, ca] = parts[3];
   const auto isBeyond = [&](const dvec3& from, const dvec3& to, const dvec3& corner) {

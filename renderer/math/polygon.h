@@ -19,12 +19,12 @@ using glm::dvec2;
 
 double signedArea(std::span<const dvec2> polygon);  // positive if counter-clockwise
 
-// Why the polygon is not simple; nullopt if it is: at least three vertices, an area, no edges that
-// touch other than neighbours at their vertex. Takes time in proportion to the square of their
-// number.
+// The reason why the polygon is not simple; nullopt if it is: at least three vertices, an area, and
+// no edges that touch, except neighbours at their vertex. Takes time in proportion to the square of
+// their number.
 std::optional<std::string_view> whyNotSimple(std::span<const dvec2> polygon);
 
-// By the even-odd rule; points on edges belong to either side.
+// Tests by the even-odd rule; points on edges belong to either side.
 bool contains(std::span<const dvec2> polygon, const dvec2& point);
 
 // Indices of the vertices of triangles that together cover a simple counter-clockwise polygon (ear
@@ -42,9 +42,9 @@ class SphericalPolygon {
  public:
   static constexpr size_t kMaxCorners = 64;
 
-  // Unit directions, in either order around it. Throws InputError, a reason that starts with
-  // `location`, for another number of corners, and for a polygon that is not simple or not within a
-  // cone of 80 degrees about the mean of its corners.
+  // The corners are unit directions, in either order around the polygon. Throws InputError, a
+  // reason that starts with `location`, for another number of corners, and for a polygon that is
+  // not simple or not within a cone of 80 degrees about the mean of its corners.
   SphericalPolygon(const std::vector<dvec3>& corners, const std::string& location);
 
   const std::vector<dvec3>& corners() const { return corners_; }  // counter-clockwise from inside
@@ -61,7 +61,8 @@ class SphericalPolygon {
   // there, if the whole polygon is above the horizon.
   dvec3 vectorIrradiance() const;
 
-  // Uniform over the solid angle, pdf 1 / solidAngle() (Arvo 1995); all numbers in [0, 1).
+  // A direction uniform over the solid angle, pdf 1 / solidAngle() (Arvo 1995); all numbers in [0,
+  // 1).
   dvec3 sample(double u, double v) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rotations of an environment, as a probe's.
+// Rotations of an environment, such as a probe.
 #pragma once
 
 #include <vector>
@@ -25,10 +25,10 @@ class Rotation {
     double yaw, pitch, roll;  // degrees
   };
 
-  // About +Y alone. The constructors throw InputError if a number is not finite.
+  // A rotation about +Y alone. The constructors throw InputError if a number is not finite.
   Rotation(float yawDegrees = 0);
   static Rotation ofAngles(const Angles& angles);
-  // Of any length. Throws InputError if it is 0. Without a tilt it is a yaw.
+  // From a quaternion of any length but 0; throws InputError for 0. Without a tilt it is a yaw.
   static Rotation ofQuaternion(const glm::dquat& quaternion);
 
   // Whether it is more than a yaw.
@@ -63,8 +63,8 @@ Rotation between(const Rotation& from, const Rotation& to, double t);
 
 // Rotations: spread evenly, and by a vector.
 
-// So many rotations with no large gap between them: a super-Fibonacci spiral of unit quaternions
-// (Alexa 2022).
+// The given number of rotations with no large gap between them: a super-Fibonacci spiral of unit
+// quaternions (Alexa 2022).
 std::vector<glm::dmat3> spreadRotations(int count);
 
 // The rotation about `axis` by its length in radians.

@@ -51,9 +51,9 @@ inline constexpr int kLens = 2;      // 2
 inline constexpr int kVertex = 4;    // first block
 inline constexpr int kLight = 0;     // 2: direction towards the probe
 inline constexpr int kBsdf = 2;      // 2: direction of the next ray
-inline constexpr int kLobe = 4;      // 1: which lobe
+inline constexpr int kLobe = 4;      // 1: choice of a lobe
 inline constexpr int kRoulette = 5;  // 1
-inline constexpr int kEmitter = 6;   // 2: which triangle and where on it
+inline constexpr int kEmitter = 6;   // 2: choice of a triangle and of a point on it
 // 1 each: strategy or guide; BSDF or guide. Shared with kEmitter: the estimates of probe, emitters
 // and the rest of the path are added, so they need not be independent.
 inline constexpr int kGuide = 6, kBounce = 7;
@@ -62,7 +62,7 @@ inline constexpr int kPerVertex = 8;
 // Deeper vertices contribute too little to profit from stratification; they use independent random
 // numbers.
 inline constexpr int kTabulatedVertices = 6;
-// How many dimensions a table needs for paths of so many vertices.
+// The number of dimensions that a table needs for paths of so many vertices.
 constexpr int tabulated(int vertices) {
   return kVertex + kPerVertex * std::clamp(vertices, 1, kTabulatedVertices);
 }
@@ -101,7 +101,8 @@ class PixelSampler {
     return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: not stratified
   }
   float get1(int d) const { return toUnit(bits(d)); }
-  // With 53 bits, to choose among more than 2^24 items; the lower 21 bits are not stratified.
+  // A number with 53 bits, to choose among more than 2^24 items; the lower 21 bits are not
+  // stratified.
   double getFine1(int d) const {
     constexpr uint64_t kPurpose = 0x66696e65;  // separate random stream
     const uint64_t low = hash(key_ ^ kPurpose, index_, uint64_t(d + base_)) >> 43;
@@ -109,8 +110,8 @@ class PixelSampler {
   }
   vec2 get2(int d) const { return {get1(d), get1(d + 1)}; }
 
-  // When the shutter sees the sample: a dimension of its own, which only renders of moving scenes
-  // use, padded to those of the table.
+  // The sample's time within the shutter interval: a separate dimension, used only for moving
+  // scenes, padded to the dimensions of the table.
   float time() const {
     constexpr uint64_t kPurpose = 0x74696d65;  // separate random stream
     const uint64_t order = hash(seed_, kPurpose);

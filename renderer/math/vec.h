@@ -46,8 +46,8 @@ struct Frame {
     y = {b, sign + z.y * z.y * a, -z.y};
   }
 
-  // With local +x along the component of the tangent that is perpendicular to the normal; any x if
-  // there is none.
+  // A frame with local +x along the component of the tangent that is perpendicular to the normal;
+  // any x if there is none.
   Frame(const vec3& normal, const vec3& tangent) : Frame(normal) {
     const vec3 along = tangent - normal * glm::dot(normal, tangent);
     const float length2 = glm::dot(along, along);

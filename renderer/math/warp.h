@@ -65,7 +65,7 @@ struct SphericalCap {
     return glm::dot(to, to) <= squaredChord;
   }
 
-  // Uniform over the solid angle, from two numbers in [0, 1).
+  // A direction uniform over the solid angle, from two numbers in [0, 1).
   vec3 direction(float u, float v) const {
     const float squared = u * squaredChord;
     float sine, cosine;

@@ -32,8 +32,8 @@ struct BiasVariance {
 //
 // With d = mean of the R images - reference, s2 = their sample variance, v = squared error of the
 // reference and w = s2 / R + v, the squared bias is estimated by d^2 - w, without bias. The
-// standard error of relMse is that of each pixel's mean over the repeats, that of the variance
-// comes from the jackknife, and that of the squared bias from its variance under normal noise, 4
+// standard error of relMse comes from each pixel's mean over the repeats, the one of the variance
+// from the jackknife, and the one of the squared bias from its variance under normal noise, 4
 // bias^2 w + 2 w^2.
 BiasVariance biasVariance(std::span<const Image> repeats, const Reference& reference);
 
@@ -54,10 +54,10 @@ struct PowerLaw {
   double logAt(double samples) const;
 };
 
-// Least squares of log error against log samples. Points are weighted by their inverse variance
-// (the variance of log e is that of e over e^2). If they scatter more than their standard errors
-// allow, the slope's standard error increases accordingly (Birge 1932). nullopt for fewer than two
-// points above 0.
+// A least-squares fit of log error against log samples. Points are weighted by their inverse
+// variance (the variance of log e is the variance of e over e^2). If they scatter more than their
+// standard errors allow, the slope's standard error increases accordingly (Birge 1932). nullopt for
+// fewer than two points above 0.
 std::optional<PowerLaw> fitPowerLaw(std::span<const ConvergencePoint> points);
 
 // The number of samples at which the variance, by its power law, equals the squared bias; more

@@ -7,7 +7,7 @@
 
 namespace chromeball {
 
-// A screen of 3840 pixels and a width of 0.7 m, seen from 0.7 m.
+// Pixels per degree of a screen that is 3840 pixels and 0.7 m wide, seen from 0.7 m.
 inline constexpr double kPixelsPerDegree = 0.7 * 3840 / 0.7 * 3.14159265358979323846 / 180;
 
 // The difference of each pixel, one channel, from 0 (equal) to 1. Both images are RGB, of one size

@@ -18,7 +18,7 @@ struct ZScores {
   double pValue = 1;   // probability of such a maximum among normal deviates (Sidak)
 };
 
-// Over pixels and channels. Pairs with a number that is not finite are counted and ignored.
+// Errors over pixels and channels. Pairs with a number that is not finite are counted and ignored.
 struct ImageError {
   double mse = 0;
   double relMse = 0;         // mean of (a - b)^2 / (b^2 + 0.01)
@@ -38,7 +38,8 @@ ImageError imageError(const Image& a, const Image& b, const Image* varianceA = n
 // The maximum |z| of each pixel's channels, one channel; 0 where the variance is unknown.
 Image zScoreImage(const Image& a, const Image& b, const Image* varianceA, const Image* varianceB);
 
-// For each pixel the root of the mean over channels of (a - b)^2 / (b^2 + 0.01), one channel.
+// A map with one channel: for each pixel, the root of the mean over channels of (a - b)^2 / (b^2 +
+// 0.01).
 Image relativeErrorImage(const Image& a, const Image& b);
 
 }  // namespace chromeball

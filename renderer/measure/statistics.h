@@ -31,8 +31,8 @@ double welchTest(const Moments& a, const Moments& b);
 // p-value of the hypothesis that the mean is `truth` (t-test, two-sided).
 double tTest(const Moments& a, double truth);
 
-// The significance of each of `tests` independent tests for which the probability that any of them
-// rejects a true hypothesis is `significance` (Sidak 1967).
+// The significance level of each of `tests` independent tests, if the probability that any of them
+// rejects a true hypothesis is to be `significance` (Sidak 1967).
 double sidak(double significance, int tests);
 
 // An estimated number with its standard error.

@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-// Whether it can be shown in a message.
+// Whether the text can be shown in a message.
 bool isPlainText(const std::string& text) {
   return text.size() < 32 && std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
 }

@@ -23,7 +23,7 @@ namespace chromeball {
 // Files of renders that are not complete: checkpoints, shards and crops. Each is an .exr with the
 // image so far, which other programs read, and the sums of the samples behind it (exr_state.h).
 
-// Which render a file is of, and how its image is made.
+// Identifies the render that a file is a part of, and says how its image is made.
 struct RenderPart {
   std::string identity;  // renderIdentity() (job_description.h)
   FinishPlan plan;
@@ -32,10 +32,10 @@ struct RenderPart {
   void archive(Archive& a);
 };
 
-// For OutputImage::state. Both must outlive the writing.
+// The function for OutputImage::state. `part` and `result` must outlive the writing.
 std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result);
 
-// Without its images. Throws InputError.
+// Reads a part without its images. Throws InputError.
 RenderPart readPartHeader(const std::filesystem::path& path);
 
 // Calls something again and again, so many seconds after its last call has ended.
@@ -85,7 +85,7 @@ class JobControl : public RenderControl {
   std::function<void(const RenderState&)> onPass_;
   std::optional<std::string> path_;  // of the checkpoint
   std::optional<FileLock> lock_;
-  RenderPart part_;  // of the checkpoint; its identity is that of the files as they were loaded
+  RenderPart part_;  // of the checkpoint; identified by the files as they were loaded
   std::vector<Viewer*> viewers_;
   Interval images_, checkpoints_, views_{0};
   Stopwatch rendering_;

@@ -69,7 +69,7 @@ bool overlap(const Crop& a, const Crop& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-// `crops`: one part of each.
+// `crops`: one part of each crop.
 void checkCrops(const std::vector<const Header*>& crops) {
   uint64_t covered = 0;
   for (size_t i = 0; i < crops.size(); ++i) {
@@ -90,7 +90,7 @@ void paste(const Image& part, const Crop& at, Image& whole) {
     std::copy_n(part.at(0, y), part.width * part.channels, whole.at(at.x, at.y + y));
 }
 
-// Of the whole image, without the plate and the reflectance.
+// The plan for the whole image, without the plate and the reflectance.
 FinishPlan wholePlan(FinishPlan plan) {
   RenderSettings& s = plan.settings;
   s.crop.reset();
@@ -99,7 +99,7 @@ FinishPlan wholePlan(FinishPlan plan) {
   return plan;
 }
 
-// The images of a composite, its layers and light groups are not among what imageBytes() counts.
+// The images of a composite, its layers and light groups are not counted by imageBytes().
 double bytesOf(const FinishPlan& plan) {
   const RenderSettings& s = plan.settings;
   double perPixel = 0;
@@ -112,7 +112,7 @@ double bytesOf(const FinishPlan& plan) {
   return imageBytes(s) + perPixel * s.width * s.height;
 }
 
-// Whether the films of a part can be added to those of the whole.
+// Whether the films of a part can be added to the whole's.
 bool fits(const FinishPlan& part, const FinishPlan& whole) {
   const RenderSettings &a = part.settings, &b = whole.settings;
   return a.width == b.width && a.height == b.height && a.aovs == b.aovs && a.denoise == b.denoise &&

@@ -10,8 +10,8 @@
 
 namespace chromeball {
 
-// The parts in an order that does not depend on that of the arguments, so that the sums have the
-// same bits. Only their headers have been read.
+// The parts in an order that is independent of the order of the arguments, so that the sums have
+// the same bits. Only their headers have been read.
 class PartSet {
  public:
   // Throws InputError, naming the file or the part, if one belongs to another render, is there
@@ -24,7 +24,7 @@ class PartSet {
   std::vector<std::string> paths_;
 };
 
-// The whole render, or what there is of it so far.
+// The whole render, or its samples so far.
 struct MergedParts {
   RenderPart part;
   RenderResult result;

@@ -32,7 +32,7 @@ class PatchSource {
       const dvec2 fromCentre = uv - 0.5;
       const double radius = glm::length(fromCentre), maximum = 0.5 - 0.5 / image_.width;
       if (radius > 0.5 + kRounding) return dvec3(0);  // the disc does not show this direction
-      // At most to half a texel inside the rim, where at least one of the four texels is inside.
+      // Clamped to half a texel inside the rim, where at least one of the four texels is inside.
       if (radius > maximum) uv = 0.5 + fromCentre * (maximum / radius);
     }
     const double x = uv.x * image_.width, y = uv.y * image_.height;
@@ -67,8 +67,8 @@ class PatchSource {
   int faceWidth_, faceHeight_;
 };
 
-// The texels that show a direction: not those around a disc, or between the arms of a cross. Of a
-// disc that shows a part of the sphere, as many as all of the sphere would have.
+// The texels that show a direction: not those around a disc, or between the arms of a cross. For a
+// disc that shows a part of the sphere, as many as the whole sphere would have.
 double texelsInUse(Mapping mapping, const ImageSize& image) {
   const auto [columns, rows] = faceLayout(mapping);
   const double all = double(image.width) * image.height;

@@ -49,7 +49,7 @@ std::array<double, 3> ZonalKernel::legendreMoments() const {
     const double n = parameter_, zero = 2 * kPiD / (n + 1);
     return {zero, 2 * kPiD / (n + 2), (3 * 2 * kPiD / (n + 3) - zero) / 2};
   }
-  // Over t = (1 - cos) / 2 = (exp(s) - 1) / b, in which 1 / q^2 = exp(-2 s): Simpson's
+  // Integrates over t = (1 - cos) / 2 = (exp(s) - 1) / b, where 1 / q^2 = exp(-2 s), by Simpson's
   // rule in s, to 1e-9.
   constexpr int kSteps = 2048;
   const double b = 1 / parameter_ - 1, step = std::log1p(b / 2) / kSteps;
@@ -67,7 +67,7 @@ std::array<double, 3> ZonalKernel::legendreMoments() const {
 
 namespace {
 
-// A kernel, and what the sums of all directions need to know of it.
+// A kernel, with the numbers that the sums of all directions need.
 struct Lobe {
   const ZonalKernel& kernel;
   double error;

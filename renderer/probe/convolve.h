@@ -61,8 +61,8 @@ class ZonalKernel {
 std::vector<dvec3> convolve(const Image& latLong, const ZonalKernel& kernel,
                             std::span<const vec3> directions, double error = 1e-3);
 
-// The same from nine spherical harmonics (Ramamoorthi and Hanrahan 2001): blurred more than by the
-// kernel where that is narrow, and perhaps negative.
+// The same from nine spherical harmonics (Ramamoorthi and Hanrahan 2001): blurred more than by a
+// narrow kernel, and perhaps negative.
 std::vector<dvec3> shConvolve(const Image& latLong, const ZonalKernel& kernel,
                               std::span<const vec3> directions);
 

@@ -92,7 +92,7 @@ class RowSeries {
   }
 
   // The harmonic function in the disc that this row bounds, at `radius` below 1 in the plane: each
-  // coefficient m times radius^m. It is within the range of the row, but for the terms left out.
+  // coefficient m times radius^m. It is within the range of the row, apart from the terms left out.
   float inside(double radius, int column) const {
     constexpr double kNegligible = 1e-5;
     double sum = coefficients_[0].real(), power = radius;

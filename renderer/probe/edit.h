@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits of a lat-long probe in place, of its first three channels: to sculpt light that was
-// captured (HDRI book, sections 9.1 and 9.4.4). Texels are constant over their area.
+// Edits the first three channels of a lat-long probe in place: to sculpt captured light (HDRI book,
+// sections 9.1 and 9.4.4). Texels are constant over their area.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ namespace chromeball {
 // below it, and becomes the mean of both.
 void replaceBelowHorizon(Image& latLong, const Rgb& radiance);
 
-// Below the horizon the sky is seen mirrored: radiance from (x, -y, z) as from (x, y, z).
+// Mirrors the sky below the horizon: radiance from (x, -y, z) as from (x, y, z).
 void mirrorAtHorizon(Image& latLong);
 
-// Left and right are exchanged: radiance from (x, y, z) as from (-x, y, z).
+// Exchanges left and right: radiance from (x, y, z) as from (-x, y, z).
 void mirrorLeftAndRight(Image& latLong);
 
 // Multiplies the texels whose centres lie at most `radius` degrees from `centre` (unit). The other
@@ -45,9 +45,9 @@ struct RepairReport {
 };
 
 // Repairs the first three channels in place. A negative or -infinite channel becomes 0. A texel
-// with a NaN becomes the mean of those among its eight neighbours that have none (x wraps if
-// `wrapX`), or black if there are none. A +infinite channel becomes the largest finite channel of
-// the image: it marks the brightest source, which an average of the neighbours would lose.
+// with a NaN becomes the mean of those of its eight neighbours that have none (x wraps if `wrapX`),
+// or black if there are none. A +infinite channel becomes the largest finite channel of the image:
+// it marks the brightest source, which an average of the neighbours would lose.
 RepairReport repair(Image& image, bool wrapX);
 
 // "3 NaN, 1 infinite, 20 negative texels, the first at (5, 7)".

@@ -24,8 +24,8 @@ struct Fisheye {
   double halfAngle() const;   // in radians
   double solidAngle() const;  // of the field of view
 
-  // From the angle to the axis (radians, 0 to pi) to the radius, and from the radius (0 to 1) to
-  // the angle. Outside the field of view the radius is above 1.
+  // Converts the angle to the axis (radians, 0 to pi) to the radius, and the radius (0 to 1) to the
+  // angle. Outside the field of view the radius is above 1.
   double radius(double angle) const;
   double angle(double radius) const;
 
@@ -41,8 +41,8 @@ std::string fisheyeName(const Fisheye& lens);
 // Whether `name` is "fisheye", or begins so with a colon after it.
 bool namesFisheye(std::string_view name);
 
-// From "fisheye[:FIELD_OF_VIEW[:PROJECTION]]": at least 60 degrees; 180 degrees and equidistant if
-// left out. Throws InputError, begun by `location`.
+// Parses "fisheye[:FIELD_OF_VIEW[:PROJECTION]]": at least 60 degrees; 180 degrees and equidistant
+// if left out. Throws InputError, begun by `location`.
 Fisheye parseFisheye(std::string_view name, std::string_view location);
 
 }  // namespace chromeball

@@ -82,7 +82,7 @@ namespace {
 
 std::vector<BrightestTexels> brightestTexels(const Image& image) {
   const size_t width = size_t(image.width), count = width * size_t(image.height);
-  // Of large maps memory costs most of the time: only what the order needs is kept.
+  // With large maps memory access takes most of the time: only what the order needs is kept.
   std::vector<float> brightness = longArray<float>(count);
   std::vector<double> solidAngles;
   double total = 0;

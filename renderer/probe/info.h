@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// How much of a probe's light an image with less range would lose, and whether it has been lost
+// The light of a probe that an image with less range would lose, and whether it has been lost
 // already. Maps are lat-long, finite and not negative; radiance is constant over each texel.
 
 // The texels whose largest channel is within 0.2% of the largest of all: an encoding in 8 bits of
@@ -19,9 +19,10 @@ namespace chromeball {
 struct Plateau {
   size_t texels = 0;
   double solidAngle = 0;  // steradians
-  // At least 8 texels and twice the solid angle of the sun's disc, but not above 90% of the sphere;
-  // and fewer texels from 0.2% to 1% below the maximum than within 0.2%: around a smooth maximum
-  // there are four times as many. A lamp of constant radiance looks clipped as well.
+  // True if the maximum covers at least 8 texels and twice the solid angle of the sun's disc, but
+  // not above 90% of the sphere; and if there are fewer texels from 0.2% to 1% below the maximum
+  // than within 0.2%: around a smooth maximum there are four times as many. A lamp of constant
+  // radiance looks clipped as well.
   bool looksClipped = false;
 };
 Plateau plateau(const Image& latLong);
@@ -32,8 +33,8 @@ Plateau plateau(const Image& latLong);
 double robustRange(const Image& latLong);
 
 // The fraction of the light, of red, green and blue together, that is lost if the map is exposed so
-// that its mean luminance over the sphere is 0.18, and each channel is clipped at 1. It is that of
-// the irradiance too, in the mean over all normals. 0 for a black map.
+// that its mean luminance over the sphere is 0.18, and each channel is clipped at 1. The same
+// fraction of irradiance is lost, in the mean over all normals. 0 for a black map.
 double lostIfClippedAtWhite(const Image& latLong);
 
 struct BrightestTexels {

@@ -12,7 +12,7 @@ namespace {
 
 using Row = RowIntegrals<dvec3, 3>;
 
-// Rows of coarser maps are divided: in azimuth the integrals are exact, but all of a row has the
+// Rows of coarser maps are divided: in azimuth the integrals are exact, but a whole row has the
 // horizon of its mean direction.
 constexpr int kMinRows = 128;
 
@@ -23,7 +23,7 @@ Row rowOf(const Image& latLong, int y, const AzimuthTable<3>& table) {
   return {table, std::move(radiances)};
 }
 
-// From the part of a row with these moments.
+// The irradiance from the part of a row with these moments.
 dvec3 irradianceFrom(const Row& row, const PolarMoments& moments, const Horizon& horizon) {
   const auto [one, cosine, sine] = row.over(horizon.above(moments.sine2, moments.sineCosine));
   const dvec3& n = horizon.normal();
@@ -123,7 +123,7 @@ Arc Horizon::above(double sine, double cosine) const {
           turned(azimuth_, {half, cosHalf, sinHalf})};
 }
 
-// Without cancellation for flat rows.
+// Written so that flat rows suffer no cancellation.
 PolarMoments::PolarMoments(double theta0, double theta1) {
   const double sum = theta0 + theta1, height = theta1 - theta0;
   sine2 = (height - std::sin(height) * std::cos(sum)) / 2;

@@ -29,7 +29,7 @@ std::vector<dvec3> shIrradiance(const Image& latLong, std::span<const vec3> norm
 // map.
 std::vector<vec3> texelDirections(const ImageSize& latLong);
 
-// The same of the environment that `rotation` turns: directions in the map, which is not turned.
+// The same for the environment that `rotation` turns: directions in the map, which is not turned.
 std::vector<vec3> texelDirections(const ImageSize& latLong, const Rotation& rotation);
 
 // Three channels; one colour a texel, row by row.
@@ -47,7 +47,7 @@ struct Azimuth {
   double phi, cos, sin;  // phi in [0, 2 pi]
 };
 
-// The azimuths from `begin` on to `end`, over the seam where that is less.
+// The azimuths from `begin` to `end`, across the seam if `end` is less.
 struct Arc {
   enum class Kind { Empty, Part, Whole } kind = Kind::Empty;
   Azimuth begin{}, end{};

@@ -22,7 +22,7 @@ const std::string* textOf(const ImageFile& file, const char* attribute) {
   return found == file.metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
 }
 
-// Of the map, which a data window may lie in.
+// The size of the whole map; the file's data window may be a part of it.
 ImageSize sizeOf(const ImageFile& file) {
   if (file.placement) return {file.placement->width, file.placement->height};
   return {file.image.width, file.image.height};
@@ -51,7 +51,7 @@ std::optional<Mapping> namedMapping(const ImageFile& file) {
   }
 }
 
-// Turned by 180 degrees; without resampling if the width is even.
+// The map turned by 180 degrees; without resampling if the width is even.
 Image turned(Image latLong) {
   if (latLong.width % 2)
     return convert(latLong, Mapping::LatLong, Mapping::LatLong, {latLong.width, latLong.height},
@@ -199,7 +199,7 @@ std::vector<std::string> lightWarnings(const LoadedProbe& probe,
 
 namespace {
 
-// Whether the image is black outside the mapping's valid area: at least 9 in 10 of those texels are
+// Whether the image is black outside the mapping's valid area: at least 9 in 10 texels there are
 // below 1/1000 of the mean inside. (Debevec's probes have a copyright notice there.)
 bool isBlackOutside(const Image& image, Mapping mapping) {
   double sumInside = 0;

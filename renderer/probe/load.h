@@ -46,7 +46,7 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
 // Warnings for the user, each "FILE: ..."; often none.
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path);
 
-// All that there is to say of the file: the reader's messages, then those warnings.
+// All messages about the file: the reader's messages, then those warnings.
 Messages probeMessages(const LoadedProbe& probe, const std::filesystem::path& path);
 
 // The warnings about the light itself: the probe is black, or clipped.
@@ -62,7 +62,7 @@ struct DetectedMapping {
 
 // The shape decides; for squares and crosses, also whether the image is black where the mapping
 // shows no direction. An angular map and an ideal mirror ball may both be black outside the same
-// disc: their texels do not tell which they are, and the angular map is the usual one.
+// disc: their texels do not tell them apart, and the angular map is the usual one.
 DetectedMapping detectMapping(const Image& image);
 
 }  // namespace chromeball

@@ -35,11 +35,11 @@ struct RadianceMoments {
   RadianceMoments(const dvec3& radiance, const RectangleGeometry& geometry);  // constant
 };
 
-// Level 0 are the texels, about which nothing is stored; a node of level k is 2^k texels wide and
+// Level 0 is the texels, for which nothing is stored; a node of level k is 2^k texels wide and
 // high, less at the map's edges. Takes a third of 96 bytes a texel.
 class MapMoments {
  public:
-  explicit MapMoments(const Image& latLong);  // which must outlive this
+  explicit MapMoments(const Image& latLong);  // `latLong` must outlive this
 
   struct Node {
     int level, x, y;

@@ -36,8 +36,8 @@ class Mapping {
 
   constexpr Kind kind() const { return kind_; }
 
-  // The lens of a disc. The angular map and the mirror ball are those of an equidistant and an
-  // equisolid lens with a field of view of 360 degrees. nullopt for maps that are no disc.
+  // The lens of a disc. The angular map corresponds to an equidistant lens and the mirror ball to
+  // an equisolid one, each with a field of view of 360 degrees. nullopt for maps that are no disc.
   std::optional<Fisheye> disc() const;
 
   bool operator==(const Mapping&) const = default;

@@ -24,9 +24,9 @@ struct Columns {
   int begin, end;
 };
 
-// Those of a lat-long map that a cap may touch, in row y. At an elevation closer to a pole than the
-// cap's rim, all; else the meridians that touch the cap, asin(sin(radius) / cos(elevation)) from
-// its axis.
+// The columns of a lat-long map that a cap may touch, in row y. At an elevation closer to a pole
+// than the cap's rim, all columns; else those between the meridians that touch the cap,
+// asin(sin(radius) / cos(elevation)) from its axis.
 Columns columnsOf(const SphericalPolygon& polygon, const ImageSize& size) {
   const double radius = polygon.capRadius(),
                cosine = std::hypot(polygon.axis().x, polygon.axis().z);
@@ -37,7 +37,7 @@ Columns columnsOf(const SphericalPolygon& polygon, const ImageSize& size) {
   return columns.end - columns.begin < size.width ? columns : Columns{0, size.width};
 }
 
-// The texels of a lat-long map of which the polygon covers a part, from 4 x 4 points of each.
+// The texels of a lat-long map that the polygon covers in part or whole, by 4 x 4 points of each.
 std::vector<CoveredTexel> coverageOf(const SphericalPolygon& polygon, const ImageSize& size) {
   constexpr int kPoints = 4;
   const double centre = directionToUv(Mapping::LatLong, polygon.axis()).y * size.height;
@@ -91,7 +91,7 @@ dvec3 meanOfRim(const Image& map, const std::vector<CoveredTexel>& coverage) {
   return weight > 0 ? sum / weight : dvec3(0);
 }
 
-// The texel's radiance without what the polygon takes.
+// The texel's radiance without the part that the polygon takes.
 Rgb remaining(const Image& map, const CoveredTexel& covered, const dvec3& fill) {
   const dvec3 before(map.rgb(covered.texel.x, covered.texel.y));
   return Rgb(before - double(covered.part) * glm::max(before - fill, dvec3(0)));
@@ -167,8 +167,8 @@ PolygonExtraction extractPolygons(const Image& latLong,
 
 namespace {
 
-// Between positions in the file and in the map, for a map that was turned by 180 degrees on
-// loading.
+// Converts between positions in the file and in the map, for a map that was turned by 180 degrees
+// on loading.
 glm::dvec2 turned(const glm::dvec2& uv, const LoadedProbe& probe) {
   if (!probe.turned) return uv;
   return {uv.x < 0.5 ? uv.x + 0.5 : uv.x - 0.5, uv.y};

@@ -18,17 +18,17 @@ struct PolygonSource {
   SphericalPolygon polygon;
   dvec3 radiance;
   double coveredTexels = 0;      // of the map; 0: smaller than a texel, or between points of them
-  std::array<dvec3, 3> taken{};  // vector irradiance of each channel of what the map had there
+  std::array<dvec3, 3> taken{};  // vector irradiance of the light taken from the map, by channel
 
-  // One directional light in its place: unit, that of the luminance taken; W/m^2 on a surface
-  // facing it.
+  // The source as one directional light: the unit direction of the luminance taken, and the
+  // irradiance in W/m^2 of a surface that faces it.
   dvec3 direction() const;
   dvec3 irradiance() const;
 };
 
 // How far the sources' constant radiances are from what was taken: |sum of (vector irradiance -
-// taken)| / sum of |taken| of the channel where that is most; 0 of even radiance. A surface that
-// sees all of them gets so much more or less of the irradiance of surfaces that face them.
+// taken)| / sum of |taken| in the channel where it is largest; 0 for even radiance. A surface that
+// sees all sources gains or loses up to this fraction of the irradiance of one that faces them.
 double unevenness(std::span<const PolygonSource> sources);
 
 // The source that a polygon alone would become.
@@ -36,8 +36,8 @@ PolygonSource sourceOf(const Image& latLong, const SphericalPolygon& polygon);
 
 // The sources, and the map without them. From each texel the part that a polygon covers gives up
 // its radiance above `fill`, the mean of the texels around the polygon, channel by channel. The
-// source's radiance is what was taken, by radiance x solid angle, over the polygon's solid angle,
-// so that energy is kept; texels below `fill` stay. Polygons are taken one after another.
+// source's radiance is the sum of radiance x solid angle taken, divided by the polygon's solid
+// angle, so that energy is kept; texels below `fill` stay. Polygons are taken one after another.
 struct PolygonExtraction {
   std::vector<PolygonSource> sources;  // in the order of the polygons
   Image remainder;                     // of the map's size, three channels
@@ -61,8 +61,8 @@ PolygonCorners cornersOf(const SphericalPolygon& polygon, const LoadedProbe& pro
 // Proposals: convex polygons around the connected regions whose luminance is above 4 times the mean
 // of the sphere, at most `count`, in order of decreasing flux; without regions that reach more than
 // 60 degrees from their middle. Where the uneven part of a region's flux is more than the flux of
-// the next region, the former is cut in two instead, through the middle of its flux and across the
-// direction in which that is spread most.
+// the next region, the former is cut in two instead, through the centre of its flux and across the
+// direction in which the flux is spread most.
 std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count);
 
 }  // namespace chromeball

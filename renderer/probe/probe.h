@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// How a lat-long map is turned where directions are looked up in it.
+// The turn of a lat-long map, applied when directions are looked up in it.
 
 // A yaw shifts the map's u. A tilt is a matrix that is applied to the directions, and not to the
 // map, which is never resampled; without one it costs a branch that is always predicted.
@@ -24,9 +24,9 @@ class MapTurn {
     uShift_ -= std::floor(uShift_);
   }
 
-  // In turns, [0, 1): of the map that is turned, minus that of the map itself.
+  // The turned map's u minus the map's own, in turns, [0, 1).
   float uShift() const { return uShift_; }
-  // To and from the frame in which the map is shifted by uShift().
+  // Converts to and from the frame in which the map is shifted by uShift().
   vec3 toMap(const vec3& d) const {
     if (isTilted_) [[unlikely]]
       return d * toWorld_;  // the transpose

@@ -8,7 +8,8 @@
 namespace chromeball {
 namespace {
 
-// Of 1, the luminance L and L^2: the same arcs for all, so that a constant probe has no variance.
+// Integrals of 1, the luminance L and L^2 over the same arcs, so that a constant probe has no
+// variance.
 using RaysRow = RowIntegrals<dvec3, 5>;
 
 // Rows of coarser maps are divided (probe/irradiance.cpp).
@@ -82,7 +83,7 @@ double relativeVariance(double meanSquare, double e) {
 }  // namespace
 
 std::vector<RayVariance> rayVariances(const Image& latLong, std::span<const vec3> normals) {
-  // What an arc that ends beside a light gets of it by rounding is no light.
+  // Light that an arc beside a light gets by rounding does not count.
   constexpr double kRounding = 1e-13;
   const double sphere = 4 * kPiD * luminance(meanRadiance(latLong));
   std::vector<RayVariance> variances;

@@ -21,9 +21,9 @@ struct RayVariance {
                           // below the horizon: integral of L x integral of L cos^2 - E^2
 };
 
-// For each of `normals` (unit). `latLong` is finite and not negative; radiance is constant over
-// each texel. The integrals are as in exactIrradiance(), with rows of at most 1/256 of the map.
-// Parallel; the same bits for any number of threads.
+// The variances for each of `normals` (unit). `latLong` is finite and not negative; radiance is
+// constant over each texel. The integrals are as in exactIrradiance(), with rows of at most 1/256
+// of the map. Parallel; the same bits for any number of threads.
 std::vector<RayVariance> rayVariances(const Image& latLong, std::span<const vec3> normals);
 
 // The number of rays for a relative standard error of `error`: variance / error^2, rounded up, at

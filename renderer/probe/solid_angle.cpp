@@ -11,7 +11,7 @@ double cornerSolidAngle(double x, double y) {
   return std::atan2(x * y, std::sqrt(1 + x * x + y * y));
 }
 
-// Of a texel of a cube's face with `side` texels.
+// The solid angle of a texel of a cube's face with `side` texels.
 double faceTexelSolidAngle(int x, int y, int side) {
   const auto at = [&](int column, int row) {
     return cornerSolidAngle(2. * column / side - 1, 2. * row / side - 1);

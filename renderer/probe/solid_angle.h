@@ -16,7 +16,7 @@ double texelSolidAngle(int row, int width, int height);
 // d(solid angle) / d(u v) at a valid position of a mapping.
 double solidAngleJacobian(Mapping mapping, const dvec2& uv);
 
-// Of the texels of an image whose centres show a direction.
+// The solid angles of the texels of an image whose centres show a direction.
 struct TexelSolidAngles {
   double min, max;
   size_t texels;

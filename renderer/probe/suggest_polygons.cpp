@@ -81,8 +81,8 @@ std::optional<PolygonCandidate> candidateOf(const Image& map, std::vector<Texel>
   return PolygonCandidate{std::move(region), *std::move(polygon), flux, unevenness({&source, 1})};
 }
 
-// By the plane through the centre of the flux, across the direction in which the flux is spread
-// most. The hulls of the parts do not overlap.
+// Cuts a region by the plane through the centre of the flux, across the direction in which the flux
+// is spread most. The hulls of the parts do not overlap.
 std::array<std::vector<Texel>, 2> cut(const Image& map, const std::vector<Texel>& region) {
   double flux;
   const ImageSize size{map.width, map.height};
@@ -108,7 +108,7 @@ std::array<std::vector<Texel>, 2> cut(const Image& map, const std::vector<Texel>
   return parts;
 }
 
-// Where a cut of a candidate changes most light.
+// The candidate whose cut changes most light.
 std::vector<PolygonCandidate>::iterator worstOf(std::vector<PolygonCandidate>& candidates) {
   return std::ranges::max_element(candidates, {}, &PolygonCandidate::unevenFlux);
 }

@@ -77,7 +77,7 @@ Core coreOf(const Image& image, const std::vector<Texel>& region) {
   return core;
 }
 
-// In order of decreasing flux, without regions too wide for a sun.
+// The cores in order of decreasing flux, without regions too wide for a sun.
 std::vector<Core> findCores(const Image& image, double threshold) {
   const double maxRadius = std::max(kMaxCore, largestTexelSide(image));
   std::vector<bool> visited(size_t(image.width) * image.height);

@@ -31,7 +31,7 @@ struct SunExtraction {
 // (less on maps too coarse to resolve a sun). The region is at most 6 degrees wide, unless it is
 // one or two texels, and contributes with its glow at least 1% of the flux. The glow ends where the
 // median of a ring around the sun is at most 20 times the mean, and at a radius of 6 degrees.
-// Inside, radiance above that interpolated from the ring belongs to the sun.
+// Inside, radiance above the radiance interpolated from the ring belongs to the sun.
 //
 // The disc has exactly the irradiance of the removed light, and its mean distance from the centre,
 // so that surfaces which see half of the disc keep their irradiance too. Together, suns and

@@ -118,8 +118,9 @@ dvec3 skyIrradiance(const SkyRadiance& radiance) {
 }
 
 // How much of the texels of a lat-long map a disc covers: a grid of samples in each texel, about 16
-// across the disc and no more than 1024 across a texel. Of each line of samples the disc has one
-// interval, whose ends are computed, so that the time is that of the texels that it covers.
+// across the disc and no more than 1024 across a texel. The disc covers one interval of each line
+// of samples, whose ends are computed, so that the time is proportional to the number of texels
+// that it covers.
 class DiscSamples {
  public:
   DiscSamples(const dvec3& direction, double radius, const ImageSize& size)
@@ -145,7 +146,7 @@ class DiscSamples {
       whole = {std::min(whole.first, line.first), std::max(whole.last, line.last)};
     }
     if (lines.empty()) return;
-    // Columns go on beyond the seam; one that is reached from both sides is counted once.
+    // Columns continue beyond the seam; one that is reached from both sides is counted once.
     const int64_t w = size_.width, first = columnOf(whole.first), last = columnOf(whole.last);
     std::vector<int64_t> inside(size_t(std::min(last - first + 1, w)));
     for (const Interval& line : lines)
@@ -159,7 +160,7 @@ class DiscSamples {
   }
 
  private:
-  // Of samples along a line, numbered from u = 0 on; empty if last < first.
+  // An interval of samples along a line, numbered from u = 0 on; empty if last < first.
   struct Interval {
     int64_t first, last;
   };
@@ -172,8 +173,8 @@ class DiscSamples {
   }
   int64_t columnOf(int64_t sample) const { return int64_t(std::floor(double(sample) / samplesX_)); }
 
-  // Those at most the radius R from the centre C, by the haversine formula:
-  // sin^2(R / 2) = sin^2((theta - thetaC) / 2) + sin(theta) sin(thetaC) sin^2((phi - phiC) / 2).
+  // The samples at most the radius R from the centre C, by the haversine formula: sin^2(R / 2) =
+  // sin^2((theta - thetaC) / 2) + sin(theta) sin(thetaC) sin^2((phi - phiC) / 2).
   Interval samplesOfLine(double theta) const {
     const auto haversine = [](double angle) { return std::pow(std::sin(0.5 * angle), 2); };
     const double left = haversine(radius_) - haversine(theta - theta_);

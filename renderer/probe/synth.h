@@ -71,8 +71,8 @@ dvec3 sunIrradiance(const ClearSky& sky);
 void addSunDisc(Image& latLong, const dvec3& direction, double diameterDegrees,
                 const dvec3& irradiance);
 
-// Sky, sun, and below the horizon a Lambertian ground lit by both. Throws InputError if elevation
-// or turbidity is out of range.
+// The sky, the sun, and below the horizon a Lambertian ground lit by both. Throws InputError if
+// elevation or turbidity is out of range.
 Image clearSkyProbe(const ImageSize& size, const ClearSky& sky, bool withSun = true);
 
 }  // namespace chromeball

@@ -12,7 +12,7 @@
 namespace chromeball {
 namespace {
 
-// Samples per pixel: a quarter of the render within these limits.
+// Samples per pixel of the training: a quarter of the render's, within these limits.
 constexpr uint32_t kMinTraining = 8, kTraining = 16;
 constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays escape
 // Ratio of second moments with and without the guide: below, `Auto` guides light samples; above,
@@ -20,7 +20,7 @@ constexpr double kRecordsPerSample = 4;  // more in interiors, fewer where rays 
 constexpr double kWorthwhile = 0.8;
 constexpr size_t kEnough = 20'000;  // records that prove the latter
 
-constexpr double kPhotonRays = 0.15;  // relative to those of the render, which are estimated:
+constexpr double kPhotonRays = 0.15;  // relative to the render's, which are estimated:
 constexpr double kRaysPerSecond = 2e6;
 constexpr double kSamplesUnderNoiseLimit = 256;
 
@@ -54,7 +54,7 @@ PathSettings GuideTraining::guided(PathSettings path) const {
 }
 
 void GuideTraining::tracePhotons(double raysPerSample) {
-  // Less bounces find no caustic. (Those in glass are not counted.)
+  // Fewer bounces find no caustic. (Bounces in glass are not counted.)
   const int minDepth = std::ranges::any_of(world_.scene.materials, &Material::isBody) ? 1 : 2;
   if (guiding_ == Guiding::Off || settings_.maxDepth < minDepth) return;
   double samples = settings_.samples;
@@ -145,8 +145,8 @@ double meanLuminance(size_t tile, const TileGrid& tiles, const PixelErrors& erro
 
 }  // namespace
 
-// The part of recorded light in a pixel's variance is E[x^2] / samples, which another fraction
-// changes by the ratio of the pdfs. Variances count relative to the luminance of the tile.
+// The part of recorded light in a pixel's variance is E[x^2] / samples, and another fraction
+// changes it by the ratio of the pdfs. Variances count relative to the luminance of the tile.
 float bestFraction(std::span<const GuideRecords> records, double fractionOfPixels,
                    const TileGrid& tiles, const PixelErrors& errors, uint32_t samples,
                    bool always) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the guides learn from photons and from the first passes of a render, and whether they are
+// Trains the guides with photons and the first passes of a render, and decides whether they are
 // used at all.
 #pragma once
 
@@ -25,17 +25,18 @@ class GuideTraining {
   static constexpr size_t kMaxRecords = 1 << 20, kMaxPhotons = 1 << 20;
   static constexpr uint32_t kMinSamples = 8;  // per pixel of a render that is guided
 
-  // The samples per pixel from which the guides may learn; 0 for a render that has none.
+  // The samples per pixel that the guides may learn from; 0 for a render without guides.
   static uint32_t samplesOf(const RenderSettings& settings);
 
   // All arguments must outlive this. Guides nothing if the strategy cannot be guided
   // (LightSource::canBeGuided()).
   GuideTraining(const World& world, const LightSource& lighting, const RenderSettings& settings);
 
-  // With the guides, which are empty at first.
+  // The settings with the guides, which are empty at first.
   PathSettings guided(PathSettings path) const;
 
-  // Before the first pass. `raysPerSample`: about how many rays a sample of a pixel takes.
+  // To be called before the first pass. `raysPerSample`: the approximate number of rays for a
+  // sample of a pixel.
   void tracePhotons(double raysPerSample);
 
   const LightGuide& lights() const { return lights_; }
@@ -43,14 +44,14 @@ class GuideTraining {
 
   // Whether the pass from `done` to `wanted` samples per pixel is part of the training.
   bool startPass(uint32_t done, uint32_t wanted) const;
-  // Where a path of the pixel puts its records; null: nowhere. Thread-safe for different tiles.
+  // The place for records of the pixel's paths; null: none. Thread-safe for different tiles.
   GuideRecords* recordsOf(size_t tile, uint64_t pixel);
 
-  // Light samples: learns from all records so far. If guiding begins: the weight of the samples so
-  // far relative to that of later ones, which have less variance.
+  // Trains the guide of light samples with all records so far. If guiding begins: the weight of the
+  // samples so far relative to that of later ones, which have less variance.
   std::optional<double> learnLights();
-  // Bounces: decides with which fraction they are guided, if at all. Frees the records. `errors`:
-  // of the image so far, with `samples` per pixel. Does nothing if the training has ended before.
+  // Decides which fraction of bounces is guided, if any. Frees the records. `errors`: the image's
+  // so far, with `samples` per pixel. Does nothing if the training has ended before.
   void end(const PixelErrors& errors, uint32_t samples);
   bool hasEnded() const { return records_.empty(); }
   void archive(Archive& a);  // after the end
@@ -70,7 +71,7 @@ class GuideTraining {
   CausticGuide caustics_;
 };
 
-// What guided bounces gain, estimated from the records of a training.
+// The gain by guided bounces, estimated from the records of a training.
 
 // The fraction of bounces from the lobes that makes variances times time least; 0, unless `always`:
 // none. `records`: by tile, of a fraction of the pixels, with `samples` each.

@@ -19,7 +19,7 @@ void LiveResult::begin(const RenderResult& result) {
   tiles_ = std::make_unique<Tile[]>(grid_.count());
 }
 
-// No thread renders.
+// No thread renders now.
 void LiveResult::end() {
   const std::scoped_lock lock(changing_);
   if (source_ && read_) readChanged();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The result of a render that goes on, for one thread that watches it.
+// The result of a render in progress, for one thread that watches it.
 #pragma once
 
 #include <atomic>
@@ -12,27 +12,26 @@
 
 namespace chromeball {
 
-// The threads that render go on while the result is read: a tile that one of them works on is left
-// out until later. What nobody asks for costs nothing.
+// Lets a thread read the result while others continue to render: a tile in work is left out until
+// later. Costs nothing if nobody reads.
 class LiveResult {
  public:
   // Reads the pixels of a tile of TileGrid, which nobody changes meanwhile; the totals may change.
   using Read = std::function<void(const RenderResult& result, size_t tile)>;
 
-  // For the thread that watches: `read` gets each tile that differs from what it got last, but for
-  // those in work; at first, all. What is left when the render ends it gets then, in a thread of
-  // the render. Nothing before the render begins.
+  // Called by the thread that watches: `read` gets each tile that has changed since it last got it,
+  // except tiles in work; at first, all. It gets the rest when the render ends, in a thread of the
+  // render. Does nothing before the render begins.
   void update(Read read);
 
-  // For the render. `result` must outlive the time until end(); an interrupted render may begin
-  // again.
+  // Called by the render. `result` must live until end(); an interrupted render may begin again.
   void begin(const RenderResult& result);
   void end();
   // While it exists, nothing is read: for changes of totals, and of the whole film, which
   // replaced() tells.
   [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(changing_); }
   void replaced();
-  // Around the work on a tile.
+  // Called before and after the work on a tile.
   void beginTile(size_t tile);
   void endTile(size_t tile);
 

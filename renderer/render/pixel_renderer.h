@@ -13,15 +13,15 @@
 
 namespace chromeball {
 
-// Which points of the Sobol sequence the samples of a pixel are.
+// The points of the Sobol sequence for the samples of a pixel.
 
-// How many of a pixel's first `samples` samples belong to the half (Film).
+// The number of a pixel's first `samples` samples that belong to the half (Film).
 constexpr uint32_t samplesOf(int half, uint32_t samples) {
   return samples / 2 + (half == 0 ? samples % 2 : 0);
 }
 
-// Each half of a pixel's samples is a sequence with its own randomisation. Where it is longer than
-// the table, the table is used again with another one.
+// Each half of a pixel's samples is a sequence with its own randomisation. If it is longer than the
+// table, the table is reused with another randomisation.
 //
 // The samples of a shard (render_settings.h) are points of the whole render's sequence.
 class SampleSequence {
@@ -37,7 +37,7 @@ class SampleSequence {
   };
 
   // Calls visit(run) for those of a half's samples [begin, end) that are this shard's, in order.
-  // The interval must not hold repeated samples and others.
+  // The interval must not hold both repeated samples and others.
   template <class Visit>
   void forRuns(int half, uint32_t begin, uint32_t end, const Visit& visit) const {
     const uint64_t repeated = samplesOf(half, shard_.repeated);
@@ -76,12 +76,12 @@ class PixelRenderer {
 
   PixelWorker makeWorker() const;
 
-  // Adds those of samples [from, to) of a pixel of the film that are the shard's to the result.
-  // Thread-safe for different pixels.
+  // Adds the shard's part of samples [from, to) of a pixel of the film to the result. Thread-safe
+  // for different pixels.
   void render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to,
               const Beam& beam) const;
 
-  // Of the camera rays through a grid of points, those that hit something.
+  // The fraction of camera rays, through a grid of points, that hit something.
   double fractionOfHits() const;
 
  private:

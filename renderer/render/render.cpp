@@ -126,7 +126,7 @@ class Renderer {
     return state_.allocation ? state_.allocation->count(x, y, mean) : mean;
   }
 
-  // They have served to learn from.
+  // These samples only served for learning.
   void forgetRepeated() {
     if (live_) live_->replaced();
     RenderResult own(settings_, integrator_.layers());
@@ -135,7 +135,8 @@ class Renderer {
     state_.result = std::move(own);
   }
 
-  // So that every pixel of a shard has a sample of each half; under limits, after some passes.
+  // The least rate for which every pixel of a shard has a sample of each half; under limits, after
+  // some passes.
   float leastRate() const {
     const Shard& shard = settings_.shard;
     if (shard.count == 1) return 0;
@@ -167,14 +168,14 @@ class Renderer {
   bool trains_ = false;  // the pass in progress is part of the guides' training
 };
 
-// Passes until the schedule ends or `stop` is set.
+// Renders passes until the schedule ends or `stop` is set.
 void renderPasses(Renderer& renderer, RenderState& state, const Progress& progress,
                   const std::atomic<bool>& stop, RenderControl* control) {
   RenderResult& result = state.result;
   while (!stop) {
     if (state.finished.empty()) {
       const uint32_t wanted = state.schedule.next(state.done, result.film);
-      if (wanted <= state.done) return progress(1);  // what was left was estimated
+      if (wanted <= state.done) return progress(1);  // the rest was only an estimate
       renderer.startPass(wanted);
     }
     const auto pauses = [&] { return control && control->wantsPause(state); };

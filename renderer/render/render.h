@@ -20,18 +20,18 @@ class IrradianceCache;
 class RenderControl;
 
 struct RenderResult {
-  // Empty films. `layers`: those of the integrator.
+  // A result with empty films. `layers`: the integrator's.
   RenderResult(const RenderSettings& settings, std::vector<Accumulation> layers);
   // Adds the samples of a part of the image, whose first pixel is this one's pixel (x, y).
   void add(const RenderResult& part, int x, int y) { addPixels(part, x, y), addTotals(part); }
   void addPixels(const RenderResult& part, int x, int y);  // thread-safe for different pixels
-  void addTotals(const RenderResult& part);                // what is not per pixel
-  // Takes the pixels of a result of the same settings.
+  void addTotals(const RenderResult& part);                // numbers that are not per pixel
+  // Takes the pixels of a result with the same settings.
   void copyPixels(const RenderResult& from, const PixelRect& rect);
-  // These pixels alone, with the names of the groups.
+  // Only these pixels, with the names of the groups.
   RenderResult part(const PixelRect& rect) const;
 
-  // The totals, then the pixels in bands (film/rows.h).
+  // Archives the totals, then the pixels in bands (film/rows.h).
   void archive(Archive& a);
   void archiveTotals(Archive& a);
   void archivePixels(Archive& a, Rows rows);
@@ -56,10 +56,10 @@ struct RenderResult {
   RenderResult(const RenderResult& whole, const PixelRect& rect);
 };
 
-// What approximate renders use and other renders may use again.
+// Data that approximate renders use and that other renders may reuse.
 struct RenderAids {
   const EnvironmentLight* environment = nullptr;  // the integrators that use it need one
-  IrradianceCache* cache = nullptr;  // with RenderSettings::cacheError: gets what it lacks
+  IrradianceCache* cache = nullptr;  // with RenderSettings::cacheError: gets missing records
 };
 
 // Renders until the limit of samples, time or noise is reached, or `stop` is set. Each pass covers
@@ -71,7 +71,7 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
                     const std::atomic<bool>& stop, RenderControl* control = nullptr,
                     const RenderAids& aids = {});
 
-// The same for any integrator. `training`: of the guides of its path tracers, if they have any.
+// The same for any integrator. `training`: trains the guides of its path tracers, if they have any.
 RenderResult render(const Integrator& integrator, const World& world, const Camera& camera,
                     const RenderSettings& settings, const Progress& progress,
                     const std::atomic<bool>& stop, GuideTraining* training = nullptr,

@@ -16,15 +16,15 @@
 
 namespace chromeball {
 
-// One of several renders whose samples together are those of one render.
+// One of several renders whose samples together make up one render's.
 
 struct RenderSettings;
 
 // Without adaptive sampling and guides, the samples of a shard are consecutive ones of the whole
 // render's. Otherwise every shard takes the first samples of the whole render, and learns from them
 // what the whole render would learn: how samples are allotted, and the guides. The first shard
-// keeps these, and of the later samples of a pixel's half, shard k of n keeps the k-th, the
-// (k + n)-th, the (k + 2 n)-th, ...
+// keeps these samples. Shard k of n keeps the k-th, the (k + n)-th, the (k + 2 n)-th, ... of the
+// later samples of a pixel's half.
 struct Shard {
   uint32_t index = 0, count = 1;
   uint32_t samplesOfAll = 0;  // mean per pixel; 0 for a render that is not a shard
@@ -33,16 +33,16 @@ struct Shard {
 
   void archive(Archive& a);
 
-  // Mean samples per pixel of all shards when this one has taken `taken`; where the samples are
-  // consecutive, `taken`.
+  // The mean samples per pixel of all shards when this one has taken `taken`; `taken` itself if the
+  // samples are consecutive.
   uint32_t ofAll(uint32_t taken) const;
   // The mean samples per pixel, of `taken`, that this shard keeps.
   uint32_t kept(uint32_t taken) const;
 
-  // Where the samples are consecutive: the first of a pixel; even, so that both halves have equal
+  // The first of a pixel's samples if they are consecutive; even, so that both halves have equal
   // shares.
   uint32_t first() const { return firstOf(index); }
-  // How many samples per pixel the shard takes.
+  // The number of samples per pixel that the shard takes.
   uint32_t samples() const;
 
  private:
@@ -63,7 +63,7 @@ enum class IntegratorKind {
   EnvironmentMap,
 };
 
-// In the order of IntegratorKind.
+// Names, in the order of IntegratorKind.
 inline constexpr std::array<std::string_view, 4> kIntegratorNames = {
     "path", "direct", "ambient-occlusion", "environment-map"};
 
@@ -72,7 +72,7 @@ constexpr bool usesEnvironment(IntegratorKind kind) {
   return kind == IntegratorKind::AmbientOcclusion || kind == IntegratorKind::EnvironmentMap;
 }
 
-// Of light samples and bounces (guide_training.h). `Auto` guides if that is worth its time;
+// Guiding of light samples and bounces (guide_training.h). `Auto` guides if that is worth its time;
 // `On` guides light samples wherever that reduces their variance, and bounces always.
 enum class Guiding { Off, On, Auto };
 
@@ -81,11 +81,11 @@ struct Crop {
   int x, y, width, height;
 };
 
-// The largest that a user may give.
+// The largest number that a user may give.
 inline constexpr uint32_t kMaxSamples = 2'000'000'000;
 inline constexpr int kMaxDepth = 1'000'000;
 
-// Names of layers that are by source of light.
+// Names of layers that are split by source of light.
 inline constexpr std::string_view kLightGroups = "light_groups", kShadowMattes = "shadow_mattes";
 
 inline bool isOfLight(std::string_view layer) {
@@ -96,11 +96,12 @@ struct RenderSettings {
   int width = 800, height = 600;  // of the whole image
   std::optional<Crop> crop;
   Shard shard;
-  // Per pixel, those that a shard repeats included; >= 1; the maximum where a limit below is set.
+  // Number per pixel, including those that a shard repeats; >= 1; the maximum where a limit below
+  // is set.
   uint32_t samples = 256;
   std::optional<double> timeLimit;   // seconds
   std::optional<double> noiseLimit;  // fraction (film/noise.h)
-  // More samples in noisier pixels, from 16 on; `samples` is then the mean (film/noise.h).
+  // Takes more samples in noisier pixels, from 16 on; `samples` is then the mean (film/noise.h).
   bool adaptive = true;
   Guiding guiding = Guiding::Auto;  // as it was asked for
   int maxDepth = 8;                 // as in PathSettings, like maxTransmissionDepth
@@ -118,7 +119,7 @@ struct RenderSettings {
   bool regularize = false;  // biased: see path_settings.h; the World needs tables for it
   bool denoise = false;     // the render keeps what denoise() needs (RenderResult::features)
 
-  // Per pixel, of all shards together.
+  // The samples per pixel of all shards together.
   uint32_t samplesOfAll() const { return shard.count > 1 ? shard.samplesOfAll : samples; }
   // Whether the image is put together from several renders (parts/merge.h).
   bool isPart() const { return crop || shard.samplesOfAll > 0; }
@@ -146,7 +147,7 @@ struct RenderSettings {
             .maxSpecularDepth = maxSpecularDepth,
             .hideProbe = hideProbe};
   }
-  // Guided bounces have no kind: with limits of depth by kind, nothing is guided.
+  // Guided bounces have no kind: with depth limits by kind, nothing is guided.
   Guiding usedGuiding() const { return path().limitsKinds() ? Guiding::Off : guiding; }
 };
 

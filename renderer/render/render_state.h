@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A render between two tiles: everything that it needs to go on.
+// A render between two tiles: everything that it needs to continue.
 #pragma once
 
 #include <cstdint>
@@ -32,22 +32,24 @@ struct RenderState {
   void archive(Archive& a);
 };
 
-// What a long render does besides rendering.
+// The tasks of a long render besides rendering.
 class RenderControl {
  public:
   virtual ~RenderControl() = default;
 
-  // Before the first pass: fills the state from a checkpoint, and returns true, if there is one.
+  // Called before the first pass: fills the state from a checkpoint, and returns true, if there is
+  // one.
   virtual bool restore(RenderState& state) = 0;
-  // After each pass. No thread renders meanwhile.
+  // Called after each pass. No thread renders meanwhile.
   virtual void endPass(const RenderState&) {}
-  // Whether pause() shall be called as soon as the tiles in work are finished. Thread-safe.
+  // Whether pause() is to be called as soon as the tiles in work are finished. Thread-safe.
   virtual bool wantsPause(const RenderState& state) const = 0;
   // No thread renders meanwhile. The state may be one that cannot be stored.
   virtual void pause(RenderState& state) = 0;
-  // For a thread that watches; null: none.
+  // The result for a thread that watches; null: none.
   virtual LiveResult* live() { return nullptr; }
-  // After the last pass, and when the render is stopped; not while the guides are being trained.
+  // Called after the last pass, and when the render is stopped; not while the guides are being
+  // trained.
   virtual void end(RenderState& state) = 0;
 };
 

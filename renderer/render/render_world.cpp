@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which integrator renders the settings.
+// Chooses the integrator for the settings.
 #include <algorithm>
 #include <cassert>
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFillShare = 0.3;  // of the progress
 
-// An estimate of the light beyond the limits of depth would lack that of the records.
+// An estimate of the light beyond the limits of depth would lack the light in the records.
 PathSettings withoutDepthCut(PathSettings settings) {
   settings.estimateDepthCut = false;
   return settings;

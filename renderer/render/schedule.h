@@ -15,8 +15,8 @@ namespace chromeball {
 // limit is near.
 class Schedule {
  public:
-  // The samples per pixel that each shard of an adaptive render takes before they are allotted by
-  // the noise of these; 0 for other renders. `settings.samples`: of a shard.
+  // The samples per pixel that each shard of an adaptive render takes first, whose noise allots the
+  // later ones; 0 for other renders. `settings.samples`: the shard's.
   static uint32_t pilotSamples(const RenderSettings& settings);
 
   // Starts the clock of the time limit. `settings` must outlive this.
@@ -34,7 +34,7 @@ class Schedule {
   // it is an extrapolation of the noise, and NaN before the first estimate of that.
   double progress(double samples) const;
 
-  // With the time so far. `adapts`: whether the pilot has ended.
+  // Reads or writes the state, with the time so far. `adapts`: whether the pilot has ended.
   void archive(Archive& a, bool adapts);
 
  private:

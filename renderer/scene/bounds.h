@@ -19,7 +19,8 @@ struct Bounds {
 
 Bounds bounds(const std::vector<vec3>& points);
 
-// Of instances in the scene's coordinates: one, those with the given indices, and all.
+// Bounds in the scene's coordinates: of one instance, of the instances with the given indices, and
+// of all.
 Bounds bounds(const Scene& scene, const Instance& instance);
 Bounds bounds(const Scene& scene, const std::vector<int>& instances);
 Bounds bounds(const Scene& scene);

@@ -35,7 +35,7 @@ double Distortion::distortedFold() const {
   return std::isinf(radius) ? radius : distorted(radius);
 }
 
-// Newton's method, and bisection where it leaves the interval that holds the root.
+// Uses Newton's method, and bisection where that leaves the interval with the root.
 double Distortion::undistorted(double radius) const {
   constexpr int kMaxSteps = 100;
   double low = 0, high = fold();
@@ -106,7 +106,7 @@ Beam beamOf(const Camera& camera, int height, double samples) {
   const double halfHeight =
       camera.orthographic ? camera.halfHeight : std::tan(0.5 * double(camera.fov));
   const double side = 2 * halfHeight / height;
-  // Of the overlaps 1, 2, 4 and 8, this one has the smallest error for 16 samples of a
+  // Among the overlaps 1, 2, 4 and 8, this one has the smallest error for 16 samples of a
   // checkerboard.
   constexpr double kOverlap = 4;
   const float fraction = float(side * side * std::min(kOverlap / samples, 1.0));

@@ -16,8 +16,8 @@ namespace chromeball {
 
 // The point (x, y) of the plane at distance 1 in front of the lens appears where a pinhole would
 // show (1 + k1 r^2 + k2 r^4) (x, y), with r^2 = x^2 + y^2 (Brown 1971, the radial terms; the
-// coefficients of OpenCV). Negative k1 is a barrel. A radius is that of a point in this plane,
-// before (undistorted) or after (distorted) the lens.
+// coefficients of OpenCV). Negative k1 is a barrel. A radius is a point's distance from the axis in
+// this plane, before (undistorted) or after (distorted) the lens.
 struct Distortion {
   double k1 = 0, k2 = 0;
 
@@ -32,8 +32,8 @@ struct Distortion {
     return 1 + r2 * (3 * k1 + r2 * 5 * k2);
   }
 
-  // The undistorted radius at which the picture folds back: distorted() ascends up to there.
-  // Infinite if it always ascends.
+  // The undistorted radius where the picture folds back: distorted() ascends up to there. Infinite
+  // if it always ascends.
   double fold() const;
 
   // Whether one point, and no other before the fold, appears at this distorted radius.
@@ -57,9 +57,9 @@ struct Camera {
   float aspect = 0;        // width / height that the file states; 0: none
   float lensRadius = 0;    // metres; 0: a pinhole. Perspective only
   float focus = 1;         // metres along the axis to the plane in focus; used if there is a lens
-  // Perspective only. Where the axis meets the image: fractions of its width and height from the
-  // top left. `fov` is that of an image of this height around the axis, without distortion: half
-  // the height is tan(fov / 2) focal lengths.
+  // Perspective only. The point where the axis meets the image, as fractions of its width and
+  // height from the top left. `fov` is the field of view of an image of this height around the
+  // axis, without distortion: half the height is tan(fov / 2) focal lengths.
   vec2 principalPoint{0.5f, 0.5f};
   Distortion distortion;
   // Its keys while the shutter is open (scene/camera.h); null: it stands still.
@@ -83,8 +83,8 @@ struct Beam {
 };
 
 // The beam of one of `samples` rays through a pixel at the centre of an image of `height` pixels.
-// The sum of the beams' areas is four times that of the pixel: less would alias textures, more
-// would blur them.
+// The sum of the beams' areas is four times the pixel's area: less would alias textures, more would
+// blur them.
 Beam beamOf(const Camera& camera, int height, double samples);
 
 // Whether the distortion shows one point at every position of an image of this width / height.
@@ -107,7 +107,7 @@ class CameraRays {
   bool hasLens() const { return lensRadius_ > 0; }
   void ray(float u, float v, vec2 lens, vec3& origin, vec3& direction) const;
 
-  // The beam around the ray through an image point; `central`: that of beamOf().
+  // The beam around the ray through an image point; `central`: from beamOf().
   Beam beamAt(const Beam& central, float u, float v) const;
 
   // Depth along the camera's axis, in metres, of the point `distance` metres along a ray.
@@ -140,7 +140,7 @@ class CameraRays {
 // about one axis at constant speed.
 class MovingCamera {
  public:
-  // For an image of the given width / height. The camera has a motion.
+  // `aspectRatio`: the image's width / height. The camera must have a motion.
   MovingCamera(const Camera& camera, float aspectRatio);
 
   Camera cameraAt(float time) const;  // stands still
@@ -152,12 +152,12 @@ class MovingCamera {
     glm::quat frame;  // turns the axes to right, up and back
     float fov, halfHeight;
   };
-  Camera lens_;  // what does not move
+  Camera lens_;  // properties that do not move
   float aspectRatio_;
   std::vector<Key> keys_;
 };
 
-// Where a camera shows points: the inverse of CameraRays.
+// Projects points onto a camera's image: the inverse of CameraRays.
 
 class CameraView {
  public:
@@ -185,7 +185,7 @@ class CameraView {
 
 class Projection {
  public:
-  // For images of width x height pixels; initially no surface is visible.
+  // A projection to images of width x height pixels; initially no surface is visible.
   Projection(const Camera& camera, int width, int height);
 
   // Sets the maximum depth of the surface visible in each pixel, in metres along the camera's axis;

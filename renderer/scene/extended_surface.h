@@ -39,7 +39,7 @@ float coatTransmittance(const Scene& scene, const Instance& instance, const Surf
                         const vec3& wo);
 
 // Surfaces that shadow rays pass: smooth thin sheets (KHR_materials_transmission), which do not
-// refract, and, as an approximation, smooth bodies of glass as if they did not.
+// refract, and, as an approximation, smooth bodies of glass, as if they did not refract either.
 
 // Whether the material transmits light only in a straight line, so that straightTransmittance() is
 // its whole transmission.

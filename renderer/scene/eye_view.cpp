@@ -12,7 +12,8 @@ namespace {
 
 using glm::dvec3;
 
-// Sights ordered by height, so that a triangle meets those of a short range only.
+// Sights ordered by height, so that a triangle needs to be tested only against a short range of
+// them.
 class EyeView {
  public:
   explicit EyeView(const dvec3& eye) : eye_(eye) {
@@ -45,7 +46,8 @@ class EyeView {
   std::vector<Sight> take() { return std::move(sights_); }
 
  private:
-  // Of a front and a back at the same place, walls modelled by two coincident surfaces, the front.
+  // Between a front and a back at the same place (walls modelled by two coincident surfaces), the
+  // front counts as nearer.
   static bool isNearer(double distance, bool showsBack, const Sight& than) {
     constexpr double kSame = 1e-6;
     if (std::fabs(distance - than.distance) <= kSame * distance) return !showsBack;

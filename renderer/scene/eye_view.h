@@ -24,7 +24,7 @@ struct Sight {
 std::vector<Sight> sightsFrom(const Scene& scene, const std::vector<int>& instances,
                               const glm::dvec3& eye);
 
-// What is seen of a building from outside.
+// The view of a building from outside.
 
 // The nearest surfaces seen along one axis, from both sides of a box, sampled by a grid of kCells^2
 // parallel rays.
@@ -36,7 +36,7 @@ class AxisView {
       : axis_(axis), origin_(box.min), cellsPerMetre_(double(kCells) / box.size()) {}
 
   void add(const std::array<glm::dvec3, 3>& triangle);
-  // Adds what a view with later triangles shows; of surfaces at one height the first counts.
+  // Adds a view of later triangles; among surfaces at one height the first counts.
   void add(const AxisView& later);
 
   // Adds the number of back faces and of all faces that are visible from the two sides.
@@ -58,13 +58,12 @@ class AxisView {
   std::vector<Cell> cells_ = std::vector<Cell>(size_t(kCells) * kCells);
 };
 
-// By axis: of the instances (indices into scene.instances), from the sides of their bounding box,
-// which has an extent along each axis. O(triangles), on all threads.
+// The views, by axis, of the instances (indices into scene.instances) from the sides of their
+// bounding box, which must have an extent along each axis. O(triangles), on all threads.
 using OutsideViews = std::array<AxisView, 3>;
 OutsideViews outsideViews(const Scene& scene, const std::vector<int>& instances, const Bounds& box);
 
-// Whether most of what the views show are back faces: those of single-sided walls that face
-// inwards.
+// Whether the views show mostly back faces: single-sided walls that face inwards.
 bool faceInwards(const OutsideViews& views);
 
 }  // namespace chromeball

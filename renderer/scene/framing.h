@@ -20,7 +20,7 @@ Camera framingCamera(const Scene& scene, float aspectRatio);
 // vertices in view.
 Camera framingCameraAround(const Scene& scene, float aspectRatio);
 
-// The centre of the bounds of what framingCamera() frames; 0 for a scene without triangles.
+// The centre of the bounds that framingCamera() frames; 0 for a scene without triangles.
 vec3 centreOf(const Scene& scene);
 
 // Chooses a camera inside a room.

@@ -65,7 +65,7 @@ class Section {
   uint16_t at(int x, int z) const { return fronts_[size_t(z * kSide + x)]; }
 
   void add(const Corners& corners, double height) {
-    std::array<dvec2, 2> ends;  // of the segment in which the triangle crosses the plane
+    std::array<dvec2, 2> ends;  // of the segment where the triangle crosses the plane
     int count = 0;
     for (size_t k = 0; k < 3 && count < 2; ++k) {
       const dvec3 &a = corners[k], &b = corners[(k + 1) % 3];
@@ -105,7 +105,7 @@ dvec2 direction(int i) {
 // negative in directions where no front face is seen.
 using Panorama = std::array<double, kDirections>;
 
-// Whether size and number of instances are those of a furnished room.
+// Whether the size and the number of instances fit a furnished room.
 bool isFurnishedRoom(const Bounds& box, const std::vector<int>& instances) {
   constexpr double kMinHeight = 2, kMaxHeight = 10, kMinWidth = 2.5;  // metres
   constexpr size_t kMinInstances = 5;
@@ -132,9 +132,9 @@ double viewArea(const Panorama& seen, int i) {
   return area;
 }
 
-// Whether the eye stands on a floor: nearly all that is below it are floor, walls and furniture,
-// most of it level or upright. (Below an eye in the hole of a torus is nothing, and within a body
-// that is turned inside out nothing is level.)
+// Whether the eye stands on a floor: nearly everything below it is floor, walls and furniture,
+// mostly level or upright. (Nothing is below an eye in the hole of a torus, and nothing is level
+// within a body that is turned inside out.)
 bool standsOnFloor(const std::vector<Sight>& sights) {
   constexpr double kBelow = -0.2, kLevel = 0.95, kUpright = 0.2;
   constexpr double kMinSeen = 0.9, kMinFlat = 0.6;
@@ -154,8 +154,8 @@ bool contains(const Bounds& box, const dvec3& p) {
          glm::all(glm::lessThanEqual(p, dvec3(box.max)));
 }
 
-// Whether one of the four sides of the model is open: from there, most of the space that the eye
-// sees is seen from outside.
+// Whether one of the four sides of the model is open: from outside it, most of the space that the
+// eye sees is visible.
 bool hasOpenSide(const std::vector<Sight>& sights, const dvec3& eye, const Bounds& box,
                  const OutsideViews& views) {
   constexpr double kMaxShown = 0.5;

@@ -21,7 +21,7 @@ constexpr float lumensPerWatt(LightUnits units) {
   return units == LightUnits::Photometric ? 683.0f : 1.0f;
 }
 
-// Where a punctual light is while the shutter is open (scene/motion.h).
+// The pose of a punctual light while the shutter is open (scene/motion.h).
 struct LampPose {
   vec3 position, direction;
   bool operator==(const LampPose&) const = default;
@@ -36,7 +36,7 @@ struct PunctualLight {
   vec3 position{0};          // metres
   vec3 direction{0, 0, -1};  // unit, from the light into the scene
   float range = INFINITY;    // metres; beyond it the light is 0
-  // A spot's cones, as coneOf() its angles: full light inside, none outside.
+  // A spot's cones, as coneOf() of their angles: full light inside, none outside.
   float innerCone = 0, outerCone = 0.29289322f;
   std::string name = {};  // of its node
   int node = -1;          // index into Scene::nodeNames; -1: none
@@ -50,7 +50,7 @@ struct PunctualLight {
   float intensityOfOneWatt() const;
 };
 
-// 1 - cos of an angle in radians, in which narrow cones keep their digits.
+// 1 - cos of an angle in radians, so that narrow cones keep their digits.
 inline float coneOf(double angle) {
   const double sine = std::sin(angle / 2);
   return float(2 * sine * sine);
@@ -82,7 +82,7 @@ struct AmbientLamp {
 // Exactly one of `punctual`, `disc`, `sun` and `ambient` is set.
 struct Lamp {
   std::string name;  // of its node
-  // In the world, metres; of a punctual light or disc, whose own is not used.
+  // The position of a punctual light or disc in the world, metres; their own one is not used.
   glm::dvec3 position{0};
   std::optional<PunctualLight> punctual;
   std::optional<DiscLamp> disc;

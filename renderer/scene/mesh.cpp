@@ -72,8 +72,8 @@ dvec3 anyPerpendicular(const dvec3& n) {
   return glm::normalize(glm::cross(n, axis));
 }
 
-// Transforms the normals and gives them unit length; those of no direction get that of the
-// triangles around them.
+// Transforms the normals and gives them unit length; a normal without a direction gets the one of
+// the triangles around it.
 void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
   std::vector<uint32_t> bad;
   std::mutex adding;
@@ -191,8 +191,8 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-// Which way UV space is turned in a triangle. Unlike handedness, which also depends on the side
-// that a vertex normal is on, it is the same in all poses of a mesh: these are split alike.
+// The orientation of UV space in a triangle. Unlike handedness, which also depends on the side that
+// a vertex normal is on, it is the same in all poses of a mesh: these are split alike.
 enum Winding { kClockwise = 0, kCounter = 1, kUndefined = 2 };  // as (x, y); no area
 
 dvec3 directionOrZero(const dvec3& v) {
@@ -206,7 +206,7 @@ double cornerAngle(const std::array<dvec3, 3>& p, int k) {
   return std::acos(std::fmin(std::fmax(glm::dot(a, b), -1.0), 1.0));
 }
 
-// What a triangle adds to the frames of its three corners.
+// The contributions of a triangle to the frames of its three corners.
 struct Contribution {
   Winding winding = kUndefined;
   std::array<dvec3, 3> tangent{};      // along dP/du; its length is the corner's angle
@@ -235,7 +235,7 @@ Contribution contributionOf(const Mesh& mesh, const std::vector<vec2>& uv, const
   return c;
 }
 
-// The sums of what the triangles of one winding add to a vertex.
+// The sums of the contributions to a vertex by triangles of one winding.
 struct VertexFrame {
   dvec3 tangent{0};
   double handedness = 0;

@@ -49,7 +49,7 @@ class MeshList {
   const Mesh& back() const { return *meshes_.back(); }
   const Shared& shared(size_t i) const { return meshes_[i]; }
 
-  // For changes; another list that has the mesh keeps it as it was.
+  // The mesh, to be changed; another list that shares it keeps it as it was.
   Mesh& edit(size_t i);
 
   void share(size_t i, const Shared& mesh) { meshes_[i] = mesh; }

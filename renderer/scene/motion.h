@@ -24,7 +24,7 @@ struct Transform {
   bool operator==(const Transform&) const = default;
 };
 
-// What a transform of a node does to surfaces: glTF allows scales of 0, which flatten a solid to a
+// The effect of a node's transform on surfaces: glTF allows scales of 0, which flatten a solid to a
 // plane figure.
 
 inline constexpr double kSingular = 1e-9;  // relative to the lengths of the columns
@@ -36,7 +36,7 @@ inline bool isInvertible(const glm::dmat3& map) {
   return std::isfinite(volume) && std::fabs(glm::determinant(m)) > kSingular * volume;
 }
 
-// Whether it leaves an area of some surface: of its images of the axes, two at least have one.
+// Whether the map leaves some surface an area: at least two of the axes' images span one.
 inline bool leavesArea(const glm::dmat3& map) {
   const glm::dmat3 m(glm::mat3{map});
   const auto spans = [&](int i, int j) {
@@ -48,14 +48,15 @@ inline bool leavesArea(const glm::dmat3& map) {
 }
 
 // Whether triangles must be wound the other way for their front faces to stay front faces. A
-// flattening transform does not mirror: the sign of its determinant is that of rounding errors.
+// flattening transform does not mirror: the sign of its determinant comes from rounding errors.
 inline bool mirrors(const glm::dmat3& map) {
   return glm::determinant(map) < 0 && isInvertible(map);
 }
 
-// For normals: the inverse transpose. If the transform flattens, its limit up to a factor, the
-// cofactors, which map all normals to that of the plane, on the side of the triangles' fronts; they
-// are projected on it, so that those along the plane do not become rounding errors.
+// The transform of normals: the inverse transpose. If the transform flattens, the limit of that up
+// to a factor: the cofactors, which map all normals to the plane's normal, on the side of the
+// triangles' fronts; they are projected on it, so that normals along the plane do not become
+// rounding errors.
 inline glm::dmat3 normalMatrix(const glm::dmat3& m) {
   if (isInvertible(m)) return glm::transpose(glm::inverse(m));
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
@@ -79,8 +80,8 @@ inline KeySpan keysAround(size_t keys, float time) {
   return {from, from + 1, position - float(from)};
 }
 
-// Where an instance is. Between two keys its vertices move along straight lines, as Embree moves
-// them. All meshes have the same triangles.
+// The motion of an instance. Between two keys its vertices move along straight lines, as Embree
+// moves them. All meshes have the same triangles.
 struct InstanceMotion {
   struct Key {
     MeshList::Shared mesh;

@@ -32,11 +32,11 @@ inline size_t triangleCount(const Scene& scene, const Instance& instance) {
   return scene.meshes[size_t(instance.mesh)].triangles.size();
 }
 
-// How far apart surfaces may be that are meant to lie in one plane.
+// The largest distance of surfaces that are meant to lie in one plane.
 
-// At least rayOffset(), metres. That is almost 0 for a triangle in a coordinate plane, but the
-// rotation of a node that turns another triangle into this plane has the rounding errors of all
-// coordinates.
+// An offset in metres, at least rayOffset(). The latter is almost 0 for a triangle in a coordinate
+// plane, but the rotation of a node that turns another triangle into this plane has the rounding
+// errors of all coordinates.
 inline float planeOffset(const Scene& scene, const Instance& instance, uint32_t triangle,
                          const vec3& normal, float time) {
   constexpr float kAcross = 0.25f;

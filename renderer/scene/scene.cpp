@@ -54,7 +54,7 @@ size_t Scene::byteCount() const {
 
 size_t Scene::texelByteCount() const {
   size_t bytes = 0;
-  std::set<const void*> counted;  // models share what they have in common
+  std::set<const void*> counted;  // models share data
   for (const auto& grid : grids)
     if (counted.insert(grid.get()).second) bytes += grid->byteCount();
   for (const Texture& texture : textures)

@@ -25,15 +25,15 @@ struct Instance {
   int node = 0;  // index into Scene::nodeNames
   std::optional<Transform> toWorld;
   bool moves = false;  // at other times of the animation it may have another place or shape
-  // While the shutter is open, from this place and shape; null: it stands still.
+  // Its motion while the shutter is open, from this place and shape; null: it stands still.
   std::shared_ptr<const InstanceMotion> motion = nullptr;
 
   vec3 point(const vec3& p) const { return toWorld ? toWorld->point(p) : p; }
   bool operator==(const Instance&) const = default;
 };
 
-// Made, copied and destroyed in scene.cpp: each file that has a scene would compile that of all its
-// parts, a second or two.
+// Made, copied and destroyed in scene.cpp: else each file with a scene would compile the same for
+// all its parts, for a second or two.
 struct Scene {
   Scene();
   Scene(const Scene&);
@@ -51,8 +51,8 @@ struct Scene {
   std::shared_ptr<const TexelFile> texelFile;  // has the texels that are not in memory, or null
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
-  std::vector<SunLamp> suns;         // besides those of a probe
-  std::vector<AmbientLamp> ambient;  // likewise
+  std::vector<SunLamp> suns;         // in addition to a probe's
+  std::vector<AmbientLamp> ambient;  // likewise, in addition to a probe
   std::optional<Image> environment;  // the model's own light probe: lat-long, already repaired
   std::vector<std::string> nodeNames;
   std::vector<std::string> notes;  // hints for the user: "FILE: ..."
@@ -64,7 +64,7 @@ struct Scene {
   size_t triangleCount() const;       // instanced triangles count once per instance
   size_t byteCount() const;           // of geometry and texels, for the statistics
   size_t texelByteCount() const;      // of texels in memory
-  size_t texelFileByteCount() const;  // of those in the file
+  size_t texelFileByteCount() const;  // of texels in `texelFile`
 
   // Throws RunError if texels could not be read from the file; those were taken as 0.
   void checkTexels() const;

@@ -47,7 +47,7 @@ float handednessOf(const std::optional<Transform>& toWorld) {
                        n.z * glm::cross(m[0], m[1]));
 }
 
-// The same of an instance that moves. Between two keys it turns as their vertices do.
+// The same for an instance that moves. Between two keys it turns as their vertices do.
 [[gnu::noinline]] vec3 movingNormal(const InstanceMotion& motion, const Triangle& triangle,
                                     vec2 barycentric, float time) {
   const KeySpan span = motion.at(time);
@@ -67,7 +67,7 @@ float handednessOf(const std::optional<Transform>& toWorld) {
           motion.point(triangle.z, span)};
 }
 
-// In world space, with the sign of the bitangent in w; not unit.
+// The tangent in world space, with the sign of the bitangent in w; not unit.
 vec4 interpolatedTangent(const Surface& s, const Instance& instance) {
   const auto tangentOf = [&](const Mesh& mesh, const std::optional<Transform>& toWorld) {
     const vec4 tangent = interpolate(mesh.tangents, s.triangle, s.barycentric);
@@ -222,7 +222,7 @@ vec4 lookup(const Scene& scene, const TextureSlot& slot, const Surface& s) {
 
 namespace {
 
-// Material::specularGlossiness, where `p` has F0 but not yet this.
+// Applies Material::specularGlossiness; `p` already has F0.
 [[gnu::noinline]] void applySpecularGlossiness(const Scene& scene, const Surface& s,
                                                MaterialPoint& p) {
   p.baseColor *= 1 - maxComponent(p.dielectricF0);

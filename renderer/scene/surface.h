@@ -43,12 +43,12 @@ float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& norm
 bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangle,
                   const vec3& direction, float time = 0);
 
-// `wo`: unit, towards the viewer. `crossSection`: of the beam around the ray, in square metres; 0
-// without texture filtering.
+// `wo`: unit, towards the viewer. `crossSection`: that of the beam around the ray, in square
+// metres; 0 without texture filtering.
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
                   const vec3& wo, float crossSection = 0, float time = 0);
 
-// Fetch into the cache what surfaceAt() reads: the triangle, then its vertices.
+// These fetch into the cache what surfaceAt() reads: the triangle, then its vertices.
 inline void prefetchTriangle(const Scene& scene, const Instance& instance, uint32_t triangle) {
   __builtin_prefetch(&scene.meshes[size_t(instance.mesh)].triangles[triangle]);
 }

@@ -37,7 +37,7 @@ class Walls {
  public:
   virtual ~Walls() = default;
 
-  // As Surroundings::behind().
+  // The same as Surroundings::behind().
   virtual Surroundings::Point behind(const vec3& origin, const vec3& direction) const = 0;
 
   // Whether no wall hides a point returned by behind() from `from`.

@@ -12,8 +12,9 @@ namespace chromeball {
 
 class CacheFile {
  public:
-  // For a job with RenderSettings::cacheError. Reads the job's file if it has one that exists.
-  // Throws InputError if that is damaged, or of another scene or light; and as checkReplaceable().
+  // The cache of a job with RenderSettings::cacheError. Reads the job's file if it exists. Throws
+  // InputError if the file is damaged or belongs to another scene or light, and wherever
+  // checkReplaceable() does.
   explicit CacheFile(const LoadedScene& loaded);
 
   IrradianceCache& cache() { return cache_; }

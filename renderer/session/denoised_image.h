@@ -12,7 +12,7 @@
 
 namespace chromeball {
 
-// What a denoised image has left.
+// The error that a denoised image has left.
 struct DenoiseReport {
   double noise = 0;  // as Noise::noise, estimated
   double seconds = 0;
@@ -21,16 +21,16 @@ struct DenoiseReport {
 // The parts of an image that are filtered apart.
 std::vector<HalvedImage> directAndIndirect(const HalvedImage& color, const HalvedImage& direct);
 
-// `result` must be of settings with `denoise`. nullopt if `stop` is set meanwhile.
+// `result` must have been rendered with `denoise`. nullopt if `stop` is set meanwhile.
 std::optional<Denoised> denoiseRender(const RenderResult& result, const Progress& progress,
                                       const std::atomic<bool>& stop);
 
 // The share of rendering in the progress of a job that denoises.
 inline constexpr double kRenderShare = 0.9;
 
-// Replaces the color of `image` (its alpha only by one that is denoised) by the denoised one, and
-// adds the layers `noisy` and `denoise_error`. `progress` receives fractions from kRenderShare
-// to 1. `noise`: of the image before, which the remaining noise does not exceed; NaN: unknown.
+// Replaces the color of `image` by the denoised one (alpha only if it is denoised too), and adds
+// the layers `noisy` and `denoise_error`. `progress` receives fractions from kRenderShare to 1.
+// `noise`: the noise before denoising, which the remaining noise does not exceed; NaN: unknown.
 // nullopt if `denoise` returns nullopt.
 using Denoiser = std::function<std::optional<Denoised>(const Progress& progress)>;
 std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, double noise,

@@ -16,7 +16,7 @@ const Image* findDepth(const OutputImage& image) {
 
 Message warning(std::string text) { return {Message::Kind::Warning, std::move(text)}; }
 
-// A finished render is written even if its camera does not allow what was to be developed.
+// A finished render is written even if its camera does not allow the steps of developing.
 DevelopSettings possible(DevelopSettings settings, const ViewFrame& frame, const Image* depth,
                          Messages& messages) {
   if (settings.needsFov() && !(frame.fov > 0)) {

@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// How an image with this metadata lies in the view of its camera: `cameraFov` is the vertical field
-// of view in degrees, 0 of an orthographic camera.
+// The place of an image with this metadata in the view of its camera: `cameraFov` is the vertical
+// field of view in degrees, 0 for an orthographic camera.
 ViewFrame viewFrame(const Image& image, const std::optional<Placement>& placement,
                     const Metadata& metadata);
 
@@ -18,8 +18,8 @@ ViewFrame viewFrame(const Image& image, const std::optional<Placement>& placemen
 Messages inWords(const DevelopReport& report);
 
 // Writes the outputs of a job: .png developed as job.output.develop says, others as rendered.
-// Returns warnings; what the image has no data for (a field of view, depth) is left out with one of
-// them. Throws as writeImage() does.
+// Returns warnings; steps that the image lacks data for (a field of view, depth) are skipped with a
+// warning. Throws as writeImage() does.
 Messages writeOutputs(const RenderDescription& job, const OutputImage& image);
 
 }  // namespace chromeball

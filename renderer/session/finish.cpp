@@ -52,9 +52,9 @@ Image groupImage(const LayerFilm& film, int group) {
   return image;
 }
 
-// light.NAME: the radiance of a group. shadow.NAME: by what factor the picture darkens where the
-// group's light is blocked, (L - L_group) / L, from 0 to 1; 1 where the picture is black. The color
-// becomes the sum of the layers, in the order in which an .exr has them.
+// light.NAME: the radiance of a group. shadow.NAME: the factor by which the picture darkens where
+// the group's light is blocked, (L - L_group) / L, from 0 to 1; 1 where the picture is black. The
+// color becomes the sum of the layers, in the order in which an .exr has them.
 void addGroups(const FinishPlan& plan, const RenderResult& result, OutputImage& output) {
   std::map<std::string, int> order;
   for (size_t i = 0; i < plan.groups.size(); ++i) order[plan.groups[i]] = int(i);
@@ -116,7 +116,7 @@ std::optional<Placement> placementOf(const RenderSettings& s) {
   return Placement{s.crop->x, s.crop->y, s.width, s.height};
 }
 
-// By the difference formula, with its errors.
+// The composite by the difference formula, with its errors.
 struct Difference {
   Image mean;
   PixelErrors errors;

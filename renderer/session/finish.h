@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the samples of a render to its image: the means, the layers, the composite. No scene is
+// Turns the samples of a render into its image: the means, the layers, the composite. No scene is
 // needed, so that parts of a render can be put together elsewhere (merge.h).
 #pragma once
 
@@ -22,7 +22,7 @@ struct CompositeReport {
   size_t darkerThanBlack = 0;    // number of pixels with negative results, which are set to 0
   struct Reflectance {           // of the local scene, estimated from the plate (reflectance.h)
     size_t pixels = 0;           // number of pixels that see the local scene
-    double clampedFraction = 0;  // fraction of these that need an albedo above 1
+    double clampedFraction = 0;  // fraction of the pixels that need an albedo above 1
     double exposureRatio = 0;    // plate over the local scene with the model's own reflectance
     double lastChange = 0;       // mean |change| of the reflectance in the last iteration
   };
@@ -37,7 +37,7 @@ struct CompositeFinish {
   bool isShadowCatcher() const { return mode == CompositeMode::ShadowCatcher; }
 };
 
-// What the image is made of besides the samples.
+// The inputs of the image besides the samples.
 struct FinishPlan {
   RenderSettings settings;  // size, crop, layers of the first hit, hideProbe, denoise
   std::optional<CompositeFinish> composite;
@@ -49,7 +49,7 @@ struct FinishPlan {
   void archiveImages(Archive& a);
 
  private:
-  bool hasLayer(const std::string& name) const;  // whether there is what a composite's layer needs
+  bool hasLayer(const std::string& name) const;  // whether there are data for this one
 };
 
 struct FinishedImage {
@@ -63,10 +63,10 @@ struct FinishedImage {
 // fractions from kRenderShare to 1 then.
 FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const Progress& progress,
                      const std::atomic<bool>& stop);
-// The same without denoising, and without what is estimated from many pixels: the noise and the
-// layer `variance`. `result` may be a part of the image's, unless it is a composite.
+// The same without denoising, and without the estimates from many pixels: the noise and the layer
+// `variance`. `result` may cover a part of the image, unless it is a composite.
 OutputImage imageOf(const FinishPlan& plan, const RenderResult& result);
-// Of a composite of two passes.
+// The same for a composite of two passes.
 FinishedImage finishComposite(const FinishPlan& plan, const CompositeRender& render,
                               const Progress& progress, const std::atomic<bool>& stop);
 

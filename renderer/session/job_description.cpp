@@ -32,8 +32,8 @@ constexpr std::array kOfImage = {"camera",       "cameraPosition", "cameraFov", 
                                  "scene-camera", "lens",           "optics"};
 constexpr std::array kVariedByComparisons = {"strategy", "adaptive", "guide"};
 
-// For row vectors: each row is the transformed unit vector of an axis, the last row the transformed
-// origin.
+// The matrix for row vectors: each row is the transformed unit vector of an axis, the last row the
+// transformed origin.
 Json rows(const glm::dmat4& matrix) {
   Json numbers = Json::array();
   for (int column = 0; column < 4; ++column)  // glm's matrices are for column vectors
@@ -80,8 +80,8 @@ void describeCamera(const RenderSettings& settings, const LoadedScene& loaded, J
   d["worldToNDC"] = rows(cameraToNdc(camera, double(settings.width) / settings.height) * toCamera);
 }
 
-// Which files count by their contents: all, or those that the description does not repeat, which
-// are neither the scene file nor a camera's.
+// The files that count by their contents: all, or only the files that the description does not
+// repeat, that is, neither the scene file nor a camera's.
 enum class FileContents { All, Others };
 
 // The description, with contents of files instead of their names, and without limits.
@@ -108,7 +108,7 @@ uint64_t hashOf(const std::vector<PunctualLight>& lights) {
   return sum;
 }
 
-// A float where that is all of the number.
+// A float if it holds the number exactly.
 Metadata::mapped_type numberAttribute(double number) {
   const float rounded = float(number);
   if (double(rounded) == number) return rounded;

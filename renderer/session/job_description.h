@@ -16,8 +16,8 @@
 
 namespace chromeball {
 
-// describe() (description/describe.h) of a description that loadScene() has completed, and what was
-// found in its files:
+// describe() (description/describe.h) for a description that loadScene() has completed, and
+// properties found in its files:
 //   files                     all files read: models, their buffers and images, probe, plate
 //   probe-found               the mapping that `probe-mapping` resolved to
 //   cameraPosition (metres), cameraFov (vertical, degrees; 0: orthographic), lensRadius, focus

@@ -26,7 +26,7 @@ namespace {
 
 using nlohmann::json;
 
-// What was stated before the render, and the peak since the process began.
+// The memory stated before the render, and the peak since the process began.
 json describe(const MemoryEstimate& stated) {
   return {
       {"process", stated.process},         {"images", stated.images}, {"textures", stated.textures},

@@ -27,7 +27,7 @@ nlohmann::json statistics(const LoadedScene& loaded, const JobResult& result,
 Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
                        const RenderResult& render, double seconds);
 
-// Those that depend on the samples.
+// The attributes that depend on the samples.
 Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render);
 
 // The output files of a job: images and statistics.

@@ -14,7 +14,7 @@ double sumOf(const std::vector<Number>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-// Images of the same layers as `part`, all 0.
+// Images with the same layers as `part`, all 0.
 OutputImage emptyImage(const OutputImage& part, const TileGrid& grid) {
   OutputImage image;
   image.placement = part.placement;
@@ -76,12 +76,12 @@ void LiveImage::read(const RenderResult& result, size_t tile) {
     paste(part.layers[i].image, rect, current_.layers[i].image);
 }
 
-// One whose image nobody has; else one that gets a new image.
+// A buffer whose image nobody else holds; else one that gets a new image.
 LiveImage::Buffer& LiveImage::freeBuffer() {
   const auto isFree = [](const Buffer& b) { return b.image && b.image.use_count() == 1; };
   const auto found = std::ranges::find_if(buffers_, isFree);
   if (found != buffers_.end()) {
-    std::atomic_thread_fence(std::memory_order_acquire);  // what its last owner has read is read
+    std::atomic_thread_fence(std::memory_order_acquire);  // after all reads by its last owner
     return *found;
   }
   std::swap(buffers_[0], buffers_[1]);  // the one that was returned last is kept

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image of a render that goes on, brought up to date by tiles.
+// The image of a render in progress, brought up to date by tiles.
 #pragma once
 
 #include <array>
@@ -18,12 +18,12 @@ struct LoadedScene;
 
 class LiveImage {
  public:
-  // Both must outlive this, and this the render.
+  // Both arguments must outlive this, and this must outlive the render.
   LiveImage(const LoadedScene& loaded, LiveResult& live) : loaded_(loaded), live_(live) {}
 
-  // The image so far; null before the first samples. Of a composite, all pixels are composed again.
-  // Otherwise only what has changed costs time, if of the two images that were returned last one is
-  // not in use any more.
+  // The image so far; null before the first samples. For a composite, all pixels are composed
+  // again. Otherwise only changed tiles cost time, if one of the last two images returned is no
+  // longer in use.
   std::shared_ptr<const SessionImage> update(double noise);
 
  private:
@@ -39,12 +39,12 @@ class LiveImage {
 
   const LoadedScene& loaded_;
   LiveResult& live_;
-  std::mutex reading_;  // the render reads what is left at its end
+  std::mutex reading_;  // at its end the render reads the rest
   std::optional<FinishPlan> plan_;
   TileGrid grid_{0, 0};
   std::vector<double> samples_;           // by tile
   OutputImage current_;                   // of all tiles that were read; not of a composite
-  std::optional<RenderResult> composed_;  // what a composite is made of
+  std::optional<RenderResult> composed_;  // the input of a composite
   std::array<Buffer, 2> buffers_;
 };
 

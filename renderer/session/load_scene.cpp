@@ -50,7 +50,8 @@ void shareMeshes(const Scene& earlier, Scene& scene) {
   }
 }
 
-// Whether rays see the same: materials are not animated, and new ones come with their instances.
+// Whether rays see the same scene: materials are not animated, and new ones come with their
+// instances.
 bool isSameWorld(const Scene& a, const Scene& b) {
   return a.instances == b.instances && a.lights == b.lights && a.meshes == b.meshes;
 }
@@ -72,7 +73,7 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
   }
 }
 
-// In the list of files that were read.
+// Replaces a name in the list of files that were read.
 void replaceFile(const std::optional<std::string>& earlier, const std::optional<std::string>& file,
                  std::vector<std::string>& files) {
   const auto at = earlier ? std::ranges::find(files, *earlier) : files.end();
@@ -85,7 +86,7 @@ void replaceFile(const std::optional<std::string>& earlier, const std::optional<
   }
 }
 
-// The probe, if it has turned or is another one. What throws changes nothing.
+// The probe, if it has turned or is another one. An exception leaves everything unchanged.
 void replaceProbe(const RenderDescription& job, LoadedScene& loaded, FrameChange& change) {
   const ProbeDescription earlier = loaded.description.probe;
   const ProbeDescription& probe = job.probe;

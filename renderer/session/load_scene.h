@@ -21,7 +21,7 @@ struct LoadedScene {
                                   // the local scene's reflectance
   Scene scene;
   Camera camera;            // the camera of the image
-  AutomaticView view;       // what the models decide of it
+  AutomaticView view;       // the parts that the models decide
   LoadedProbe loadedProbe;  // properties of its file; the map itself moves to `probe`
   Probe probe;              // black if only the scene's own lights are used
   std::optional<Surroundings> surroundings;  // the model is inside
@@ -33,15 +33,15 @@ struct LoadedScene {
   Messages messages;                       // of the job's settings, of the models and of the probe
   std::vector<std::string> modelWarnings;  // of their files and their motion
 
-  // For composites; otherwise empty.
+  // These are for composites; otherwise empty.
   ObjectMask isObject;                     // the rest of the scene is the local scene
   std::unique_ptr<Projection> projection;  // of the local scene's reflectance, where it is solved
-  std::optional<PlateScale> plateScale;    // by which the probe was scaled
+  std::optional<PlateScale> plateScale;    // the factor that the probe was scaled by
 };
 
 // Reads models and probe, chooses the camera, and the image's size if the description leaves it to
-// the camera. Of other frames: `shared`, what their models have in common, and `view`, which theirs
-// have decided; both may be null. Throws InputError.
+// the camera. For further frames of a sequence: `shared`, what their models have in common, and
+// `view`, decided by the other frames; both may be null. Throws InputError.
 LoadedScene loadScene(const RenderDescription& description, ModelCache* shared = nullptr,
                       const AutomaticView* view = nullptr);
 
@@ -51,9 +51,9 @@ struct FrameChange {
   bool probe = false;     // another one, not only a turned one
 };
 
-// Replaces the camera, the probe if it has turned or is another file, and, where a model is
-// animated, what moves with it, for another frame of the same job. Not for composites; a probe that
-// turns must have a file.
+// Replaces the camera, the probe if it has turned or is another file, and whatever an animated
+// model moves, for another frame of the same job. Not for composites; a probe that turns must have
+// a file.
 FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded, ModelCache& cache);
 
 // Messages to the user about the files of a job.

@@ -13,10 +13,10 @@
 namespace chromeball {
 namespace {
 
-// Of Embree for a triangle, with its copy of the vertices; measured with grids of two triangles per
-// vertex, which is the ratio of closed surfaces.
+// Embree's bytes for a triangle, with its copy of the vertices; measured with grids of two
+// triangles per vertex, the ratio of closed surfaces.
 constexpr double kBuiltTriangle = 84, kBuildingTriangle = 116;
-// Of a texel: radiance as read and in the probe; the cumulative distribution.
+// Bytes for a texel: radiance as read and in the probe; the cumulative distribution.
 constexpr double kProbeTexel = 3 * sizeof(float), kTableTexel = sizeof(double);
 
 double triangleCountOfMeshes(const Scene& scene) {
@@ -96,7 +96,7 @@ void checkMemory(const LoadedScene& loaded) {
 
 namespace {
 
-// Of a pixel, bytes.
+// Bytes for a pixel.
 struct PixelMemory {
   double film = double(Film::bytesPerPixel());  // all sums of samples
   double texels = 4 * sizeof(float);            // of the output: the colour and the layers
@@ -127,7 +127,7 @@ double imageBytes(const RenderSettings& settings) {
   // Estimating the noise takes three fields of errors, two of luminances and the variance; later
   // the layers and the texels of the file exist together.
   constexpr double kNoise = 3 * sizeof(glm::dvec4) + 2 * sizeof(double) + 3 * sizeof(float);
-  constexpr int kMaxParts = 3;  // of denoise(): of composites
+  constexpr int kMaxParts = 3;  // the most that denoise() gets: a composite's
   const Crop window = settings.window();
   const double denoising =
       settings.denoise ? denoiseBytes(window.width, window.height, kMaxParts) : 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// States what a loaded scene's render will take, before the acceleration structure, the tables of
-// the probe and the images are allocated.
+// States the memory that a loaded scene's render will take, before the acceleration structure, the
+// tables of the probe and the images are allocated.
 #pragma once
 
 #include "base/memory.h"
@@ -13,7 +13,7 @@ namespace chromeball {
 struct MemoryEstimate {
   double process = 0;   // the program, its libraries and its fixed tables
   double images = 0;    // film, layers and output
-  double textures = 0;  // texels in memory, or the cache of those in a file
+  double textures = 0;  // texels in memory, or the cache of texels in a file
   double geometry = 0;  // vertices, triangles and the acceleration structure
   double probe = 0;     // radiance and the tables to sample it
   double peak = 0;      // the most at any one time; files are freed before images are allocated
@@ -41,8 +41,8 @@ inline constexpr double kProcessBytes = 3e7;
 // Peak memory of the film, the layers and the output images, in bytes.
 double imageBytes(const RenderSettings& settings);
 
-// What snapshots of a session take besides (live_image.h): three images; of a composite the film
-// again, and two images.
+// The additional memory for snapshots of a session (live_image.h): three images; for a composite, a
+// copy of the film and two images.
 double snapshotBytes(const RenderSettings& settings, bool isComposite);
 
 }  // namespace chromeball

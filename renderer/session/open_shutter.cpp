@@ -88,7 +88,8 @@ void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache&
         "{}: node `{}` appears, vanishes or is mirrored while the shutter is open; it is "
         "rendered as it was before",
         modelOf(job), node));
-  // Also where no key differs: what turns by whole turns between keys seems to stand still.
+  // Checked also where no key differs: an object that turns by whole turns between keys seems to
+  // stand still.
   MotionError error;
   for (int k = 0; k < steps; ++k)
     error.add(placed.scene, modelsAtHalfStep(2 * k + 1), float((k + 0.5) / steps));

@@ -8,8 +8,8 @@
 namespace chromeball {
 
 // Gives the models, their lamps and the camera their motion. Warns where straight lines are far
-// from it, and of parts and lamps that appear, vanish or are mirrored: what is there when the
-// shutter opens stays as it was, and nothing else comes. Throws InputError.
+// from it, and of parts and lamps that appear, vanish or become mirrored: those present when the
+// shutter opens stay as they were, and no others appear. Throws InputError.
 void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache& cache);
 
 // The camera's turn around models that stand still. Returns warnings.

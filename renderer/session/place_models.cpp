@@ -146,7 +146,7 @@ PlacedModels modelsAtOrigin(const RenderDescription& job, const std::vector<Mode
   return placed;
 }
 
-// That of time 0, also in the coordinates of that time: with the same rounding for all times.
+// The view of time 0, also in the coordinates of that time: with the same rounding for all times.
 AutomaticView viewAtStart(const RenderDescription& job, const PlacedModels& now,
                           ModelCache& cache) {
   const AutomaticView view = automaticView(job, now.scene, now.origin);

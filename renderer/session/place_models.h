@@ -15,12 +15,12 @@ namespace chromeball {
 
 struct RenderDescription;
 
-// What depends on the models' bounds, at time 0 of an animation, so that it is the same at all
-// times.
+// The parts of a view that depend on the models' bounds, at time 0 of an animation, so that they
+// are the same at all times.
 struct AutomaticView {
   std::optional<Camera> camera;  // if nobody has placed one
   vec3 centre{0};                // of the camera's turn; 0 without one
-  glm::dvec3 origin{0};          // of these coordinates in the world, metres
+  glm::dvec3 origin{0};          // the world position of these coordinates' origin, metres
 
   AutomaticView seenFrom(const glm::dvec3& other) const;  // with another origin
 };
@@ -29,13 +29,13 @@ struct AutomaticView {
 AutomaticView automaticView(const RenderDescription& job, const Scene& scene,
                             const glm::dvec3& origin);
 
-// Before its `orbit`. Throws InputError for a camera that the model does not have, or a lens of an
-// orthographic one.
+// The camera before its `orbit`. Throws InputError for a camera that the model does not have, or a
+// lens for an orthographic one.
 Camera chooseCamera(const RenderDescription& job, const Scene& scene, const AutomaticView& view);
 
 struct ModelCache;
 
-// With the scene file's lamps.
+// The models, with the scene file's lamps.
 struct PlacedModels {
   Scene scene;
   Camera camera;
@@ -46,19 +46,19 @@ struct PlacedModels {
 };
 
 // Reads the models; chooses the camera, and the image's size if the job leaves it to the camera.
-// Moves what the scene file places in the world to the scene's coordinates. With an open shutter,
-// with the motion of models and camera. `view`: of other frames; null: to be found. Throws
-// InputError.
+// Converts what the scene file places in the world to the scene's coordinates. If the shutter is
+// open, includes the motion of models and camera. `view`: from other frames; null: to be found.
+// Throws InputError.
 PlacedModels placeModels(RenderDescription& job, ModelCache& cache,
                          const AutomaticView* view = nullptr);
 
-// The same of models that stand still, of which only the camera is to be placed again.
+// The same for models that stand still: only the camera is placed again.
 Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin);
 
-// `models`, which are the job's at some time, at this origin and without lamps, with their lights,
-// which are black if the job has them off; an animated model
-// may have no triangles at its time. `warnings`: each once.
+// Loads `models`, the job's at some time, at this origin and without lamps, but with their lights,
+// which are black if the job switches them off; an animated model may have no triangles at its
+// time. `warnings`: each once.
 Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
                  const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings);
 

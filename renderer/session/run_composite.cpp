@@ -116,7 +116,7 @@ bool hasLamps(const Scene& scene) {
 
 constexpr std::string_view kGround = "ground";
 
-// Whether the local scene names it, and no node of the models has its name.
+// Whether the local scene names the ground, and no node of the models has that name.
 bool namesTheGround(const CompositeEntry& entry, const Scene& scene) {
   return std::ranges::find(entry.localScene, kGround) != entry.localScene.end() &&
          std::ranges::find(scene.nodeNames, kGround) == scene.nodeNames.end();

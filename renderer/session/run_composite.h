@@ -18,8 +18,7 @@ JobResult renderComposite(const LoadedScene& loaded, const PreparedScene& prepar
 // the local scene's reflectance and gloss. Throws InputError.
 void prepareLocalScene(LoadedScene& loaded);
 
-// Scales the probe as the plate tells, if it is to be, after prepareLocalScene(). Throws
-// InputError.
+// Scales the probe by the plate, if the job says so, after prepareLocalScene(). Throws InputError.
 void scaleProbeByPlate(LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -23,12 +23,11 @@ struct PreparedScene {
 };
 
 // Throws InputError for a strategy that is unknown or does not suit the probe, and for light groups
-// that take more memory than the job may.
-// `earlier`: of the same LoadedScene before its contents changed, from which what did not change is
-// taken; null: none.
+// that take more memory than the job may. `earlier`: made from the same LoadedScene before its
+// contents changed; what did not change is taken from it. Null: none.
 PreparedScene prepareScene(const LoadedScene& loaded, const PreparedScene* earlier = nullptr);
 
-// How the image is made of the job's samples.
+// The plan for making the image from the job's samples.
 FinishPlan finishPlan(const LoadedScene& loaded, const RenderResult& result);
 
 struct JobResult : FinishedImage {
@@ -49,15 +48,15 @@ JobResult renderJob(const LoadedScene& loaded, const PreparedScene& prepared,
 // The same without progress reports and interruption.
 JobResult renderJob(const LoadedScene& loaded);
 
-// The scene of one frame after another: what does not change is loaded and built once.
+// The scenes of successive frames: what does not change is loaded and built once.
 
 class FrameScene {
  public:
-  // Loads and builds the scene of a description. All descriptions must be
-  // alike but for their times, `orbit`, and the probe's file and rotation. Files are opened, images
-  // decoded, and the tables of the probe made with the first; meshes, and the acceleration
-  // structures over them, are made again where they have moved or changed, the probe where it has
-  // turned, and all for composites. Throws InputError.
+  // Loads and builds the scene of a description. All descriptions must be alike but for their
+  // times, `orbit`, and the probe's file and rotation. Files are opened, images decoded, and the
+  // tables of the probe made for the first; meshes, and the acceleration structures over them, are
+  // made again where they have moved or changed, the probe where it has turned, and everything for
+  // composites. Throws InputError.
   void show(const RenderDescription& job);
 
   const LoadedScene& loaded() const { return *loaded_; }

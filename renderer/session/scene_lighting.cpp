@@ -143,7 +143,7 @@ std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const Loaded
     throwInput("{}: [[source]] needs a probe", job.origins.of(elementName("sources", 0)));
   std::vector<PolygonLight> lights;
   Image rest = probe.latLong();
-  // First the illums: what they take stays visible.
+  // The illums come first: the light that they take stays visible.
   const auto take = [&](bool isIllum) {
     std::vector<SphericalPolygon> polygons;
     const size_t first = lights.size();

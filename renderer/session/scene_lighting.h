@@ -23,8 +23,9 @@ void checkLit(const RenderDescription& job, const Scene& scene);
 // Removes the lamps and emission that the job leaves out.
 void removeLamps(const RenderDescription& job, Scene& scene);
 
-// The probe's map: the job's file, else the model's own environment, which it takes, else black if
-// the scene has lights of its own; of it, the part that the job renders. Throws InputError.
+// The probe's map, or the part of it that the job renders: from the job's file, else the model's
+// own environment, which is moved out of `scene`, else black if the scene has lights of its own.
+// Throws InputError.
 LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene);
 
 // The polygons of the probe that are sources of their own ([[source]]), and what is left of it.
@@ -42,10 +43,10 @@ struct ProbeSources {
 std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const LoadedProbe& loaded,
                                       const Probe& probe);
 
-// With the job's rotation and scale; frees the map.
+// The probe with the job's rotation and scale; frees the map.
 Probe probeOf(const RenderDescription& job, LoadedProbe& loaded);
 
-// With every channel times a factor.
+// The probe with every channel multiplied by its factor.
 Probe scaled(const Probe& probe, const Rgb& factor);
 
 // W/m^2 on an unoccluded surface with this unit normal.
@@ -56,7 +57,7 @@ Rgb irradianceOn(const Probe& probe, const vec3& normal);
 // unknown name.
 std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
                                           const LoadedScene& loaded, bool splitsProbe = false);
-// Of the description: its own one, or the named one.
+// The lighting of the description: made by its own function, else by the named strategy.
 std::unique_ptr<LightSource> makeLighting(const LoadedScene& loaded);
 
 // The probe as the integrator uses it, with its suns apart under the strategy `suns`; null if it

@@ -88,10 +88,10 @@ class Session::Implementation : private WorkMonitor {
 
   const SessionCallbacks callbacks_;
   RenderDescription description_;
-  std::optional<RenderDescription> given_;  // that of loaded_
+  std::optional<RenderDescription> given_;  // the one that loaded_ was made from
   std::unique_ptr<LoadedScene> loaded_;
   PreparedScene prepared_;
-  bool lightingIsStale_ = false;  // that of prepared_: its making was cancelled, or has failed
+  bool lightingIsStale_ = false;  // in prepared_: making it was cancelled or has failed
   ModelCache models_;
   Work work_;
   std::unique_ptr<WatchedRender> control_;
@@ -147,7 +147,7 @@ const SessionImage& Session::Implementation::wait() {
   return *result_;
 }
 
-// Only this thread calls back; what others report is passed over.
+// Only this thread calls back; reports of others are ignored.
 void Session::Implementation::report(const char* stage, double fraction) {
   if (callbacks_.progress && std::this_thread::get_id() == ownThread_)
     callbacks_.progress({stage, fraction});
@@ -257,7 +257,7 @@ void Session::Implementation::changeWhatDiffers() {
   lightingIsStale_ = false;
 }
 
-// What has failed half-way may be half of one description and half of another.
+// After a failure half-way, the scene may be a mixture of both descriptions.
 void Session::Implementation::unload() {
   prepared_ = {};
   loaded_.reset();

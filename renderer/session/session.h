@@ -39,12 +39,12 @@ struct SessionCallbacks {
   std::function<void()> finished = {};  // the last one of each start, also of one that failed
 };
 
-// Loads and renders a description in a thread of its own, hands out what there is so far without
-// stopping those that render, and takes other descriptions, of which it redoes only what differs
-// from the one before. After update() the picture has the bits of a new session's.
+// Loads and renders a description in a background thread, hands out the image so far without
+// stopping the render, and accepts further descriptions, for which it redoes only what differs from
+// the one before. After update() the picture has the same bits as a new session's.
 //
-// Its functions may be called from any thread, by one at a time. Errors of the background thread
-// (InputError, RunError) are thrown by the next wait().
+// Its functions may be called from any thread, but by one thread at a time. The next wait() throws
+// errors of the background thread (InputError, RunError).
 class Session {
  public:
   explicit Session(RenderDescription description, SessionCallbacks callbacks = {});
@@ -54,14 +54,14 @@ class Session {
 
   // Begins, if it has not begun: reads files, builds structures and renders.
   void start();
-  // Asks the work to end, and does not wait: from any thread at any time. Preparing ends within
-  // tens of milliseconds; a render when the tiles in work are finished, and its image is made of
-  // what there is.
+  // Asks the work to end, without waiting; may be called from any thread at any time. Preparing
+  // ends within tens of milliseconds; a render ends when the tiles in work are finished, and its
+  // image is made from the samples so far.
   void requestCancel();
   // The same, and waits.
   void cancel();
-  // Ends the work within tens of milliseconds, whatever it is, without an image. Takes another
-  // description, for the next start().
+  // Ends any work within tens of milliseconds, without an image. Takes another description, for the
+  // next start().
   void update(RenderDescription description);
 
   bool isRunning() const;
@@ -70,14 +70,15 @@ class Session {
   // std::logic_error without start(). The image is valid until the next start(), update() or the
   // destructor; its metadata are those of the command's .exr.
   const SessionImage& wait();
-  // What there is, also while it renders: not denoised, without the layer `variance`, and with the
-  // noise after the last pass over the image. Null before the first samples, and for a reference of
-  // two passes. Costs little if the snapshot before the last one is not in use any more.
+  // The image so far, also during the render: not denoised, without the layer `variance`, and with
+  // the noise after the last pass over the image. Null before the first samples, and for a
+  // reference of two passes. Costs little if the snapshot before the last one is not in use any
+  // more.
   std::shared_ptr<const SessionImage> snapshot();
   // Notes and warnings of the files and the description; after wait().
   Messages messages() const;
 
-  // What the last start() did, after wait().
+  // What the last start() has done; valid after wait().
   struct Work {
     bool loadedScene = false;  // read, and structures built over it
     bool loadedProbe = false;  // read or converted; one that has only turned is not

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who watches an image while it is rendered: a page in a browser, another program.
+// A viewer of an image while it is rendered: a page in a browser, or another program.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ struct ImageSoFar {
   bool isLast = false;  // of this render
 };
 
-// With the layers variance and samples, also if the job does not write them.
+// Includes the layers variance and samples, even if the job does not write them.
 ImageSoFar imageSoFar(FinishedImage finished, const RenderResult& render);
 
 class Viewer {
  public:
   virtual ~Viewer() = default;
 
-  // A render begins; `name` is that of its first output file.
+  // A render begins; `name` is its first output file's.
   virtual void begin(const std::string& name) = 0;
   // The fraction of the render's work done; NaN if unknown. Thread-safe.
   virtual void update(double fraction) = 0;

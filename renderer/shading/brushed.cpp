@@ -21,7 +21,7 @@ Brushed::Brushed(const MaterialPoint& m, const Rgb& diffuse, const Rgb& metalF0,
   const SpecularAlbedo once = tables.anisotropic->albedo(wo_, m.roughness, strength);
   const float white = once.a + once.b;
   const auto gain = [white](const auto& f0) { return 1.0f + f0 * ((1 - white) / white); };
-  // Each part with its own gain: that of the mixture would be less than the mixture of both.
+  // Each part has its own gain: the mixture's gain would be less than the mixture of both gains.
   const Rgb dielectricGain = gain(m.dielectricF0), metalGain = gain(metalF0);
   f0_ = glm::mix(m.dielectricF0 * dielectricGain, metalF0 * metalGain, m.metallic);
   f90_ = glm::mix(m.dielectricF90 * dielectricGain, metalGain, m.metallic);

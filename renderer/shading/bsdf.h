@@ -26,7 +26,7 @@ concept ScattersLight = requires(const T bsdf, const vec3& wi, Lobes lobes, vec2
   { bsdf.transmits() } -> std::same_as<bool>;
   // Shading normal, unit, on the viewer's side.
   { bsdf.normal() } -> std::same_as<const vec3&>;
-  // Adds what environment mapping needs of each lobe, times a weight.
+  // Adds the lobes as environment mapping needs them, times a weight.
   { bsdf.addTo(mapLobes, lobe) } -> std::same_as<void>;
 };
 static_assert(ScattersLight<Lambert> && ScattersLight<MetallicRoughness> && ScattersLight<Layered>);
@@ -34,14 +34,14 @@ static_assert(ScattersLight<Lambert> && ScattersLight<MetallicRoughness> && Scat
 // A std::variant over the set: only the type that the material needs is constructed.
 class Bsdf {
  public:
-  // Of a plain material: Lambert if it has no specular reflection. `wo`: unit, towards the viewer;
-  // the surface's normals are on its side. A specular lobe is narrow if its alpha (roughness
-  // squared) is below `mirrorAlpha`. The tables must outlive the BSDF.
+  // The BSDF of a plain material: Lambert if it has no specular reflection. `wo`: unit, towards the
+  // viewer; the surface's normals are on its side. A specular lobe is narrow if its alpha
+  // (roughness squared) is below `mirrorAlpha`. The tables must outlive the BSDF.
   Bsdf(const MaterialPoint& material, const Surface& surface, const vec3& wo,
        const BsdfTables& tables, float mirrorAlpha = 0)
       : set_(plain(material, surface, wo, tables, mirrorAlpha)) {}
 
-  // Of a material with extensions.
+  // The BSDF of a material with extensions.
   Bsdf(const MaterialPoint& material, const ExtendedPoint& extended, const RefractiveIndex& index,
        const Surface& surface, const vec3& wo, const BsdfTables& tables, float mirrorAlpha = 0)
       : set_(std::in_place_type<Layered>, material, extended, index, surface, wo, tables,
@@ -70,7 +70,7 @@ class Bsdf {
     return lobes;
   }
 
-  // Removes the other lobes; what is left stays as it was.
+  // Removes the other lobes; the remaining ones stay as they were.
   void keepOnly(KeptLobes kept) {
     std::visit([&](auto& bsdf) { bsdf.keepOnly(kept); }, set_);
   }

@@ -66,13 +66,13 @@ inline vec3 normalThatReflects(const vec3& normal, const vec3& geometricNormal, 
 // The lobes of a BSDF as environment mapping sees them (HDRI book, section 9.8.1).
 
 struct MapLobe {
-  Rgb albedo;       // towards the viewer: what it reflects of uniform radiance 1
-  vec3 direction;   // unit: of a diffuse lobe the normal, else where its middle points
+  Rgb albedo;       // radiance reflected towards the viewer under uniform radiance 1
+  vec3 direction;   // unit: a diffuse lobe's normal, else where the lobe's middle points
   bool isDiffuse;   // reflects the irradiance
   float roughness;  // perceptual, unless it is diffuse; 0 if it is smooth
 };
 
-// At most as many as a layered material has.
+// The lobes: at most as many as a layered material has.
 class MapLobes {
  public:
   void add(const MapLobe& lobe) {
@@ -89,7 +89,7 @@ class MapLobes {
   size_t count_ = 0;
 };
 
-// Which lobes a BSDF keeps where a limit of depth has been reached (PathSettings).
+// The lobes that a BSDF keeps where a depth limit has been reached (PathSettings).
 struct KeptLobes {
   bool diffuse = true, specular = true;
 };

@@ -129,7 +129,7 @@ float SheenTable::albedo(float mu, float roughness) const {
 namespace {
 
 // x = (eta - 1) / (eta + 1) from -1/2 to 1/2, with dense nodes about 0, where refraction vanishes
-// and the critical angle approaches 90 degrees. Roughness and angle as in bsdf_tables.h.
+// and the critical angle approaches 90 degrees. Roughness and angle are as in bsdf_tables.h.
 constexpr float kMaxX = 0.5f, kExponent = 2.5f;
 float etaNode(int i, int count) {
   const float t = 2 * float(i) / float(count - 1) - 1;

@@ -38,8 +38,8 @@ struct SpecularAlbedo {
   }
 };
 
-// Over perceptual roughness r = sqrt(alpha) and the cosine mu of the viewing angle. 32 x 64 nodes,
-// 16 KB; takes 0.12 s of one core to build, on all cores.
+// A table over perceptual roughness r = sqrt(alpha) and the cosine mu of the viewing angle. 32 x 64
+// nodes, 16 KB; takes 0.12 s of one core to build, on all cores.
 class EnergyTable {
   static constexpr int kRoughnesses = 32, kAngles = 64;
   using Grid = GridTable<SpecularAlbedo, kRoughnesses, kAngles>;
@@ -71,8 +71,8 @@ class EnergyTable {
 
 // Albedo of anisotropic GGX reflection in one bounce, for energy compensation.
 
-// Over perceptual roughness, strength of the anisotropy, and the viewing direction's cosine and
-// azimuth. 16 x 9 x 16 x 7 nodes, 126 KB; takes 0.14 s of one core to build, on all cores.
+// A table over perceptual roughness, strength of the anisotropy, and the viewing direction's cosine
+// and azimuth. 16 x 9 x 16 x 7 nodes, 126 KB; takes 0.14 s of one core to build, on all cores.
 class AnisotropicTable {
  public:
   AnisotropicTable();
@@ -126,8 +126,8 @@ SpecularAlbedo specularAlbedo(const vec3& wo, const Alpha& alpha, std::span<cons
 
 // Albedo of the white sheen lobe, which attenuates the layers beneath.
 
-// Over perceptual roughness and the cosine of the viewing angle. 24 x 32 nodes, 3 KB; takes 0.14 s
-// of one core to build, on all cores.
+// A table over perceptual roughness and the cosine of the viewing angle. 24 x 32 nodes, 3 KB; takes
+// 0.14 s of one core to build, on all cores.
 class SheenTable {
  public:
   SheenTable();
@@ -155,7 +155,7 @@ struct GlassAlbedo {
   }
 };
 
-// Over the index of refraction, perceptual roughness and the cosine of the viewing angle.
+// A table over the index of refraction, perceptual roughness and the cosine of the viewing angle.
 // 49 x 20 x 40 nodes, 460 KB; takes 0.33 s of one core to build, on all cores.
 class GlassTable {
  public:
@@ -169,12 +169,12 @@ class GlassTable {
   GridTable<GlassAlbedo, kEtas, kRoughnesses, kAngles> grid_;
 };
 
-// Those tables that the materials need, and no others: none for Lambertian materials. Each takes up
-// to 0.3 s of one core, once in a process: all scenes share them. Must outlive the BSDFs.
+// The tables that the materials need: none for Lambertian materials. Each takes up to 0.3 s of one
+// core, once in a process: all scenes share them. Must outlive the BSDFs.
 struct BsdfTables {
   // `widened`: smooth materials may become rough (transport/path_settings.h).
   explicit BsdfTables(std::span<const Material> materials, bool widened = false);
-  // Makes those that are missing.
+  // Makes the tables that are missing.
   void complete(std::span<const Material> materials, bool widened = false);
 
   std::shared_ptr<const EnergyTable> energy;

@@ -31,8 +31,7 @@ Rgb sensitivity(float path, float shift) {
 }  // namespace
 
 Rgb thinFilmReflectance(const Rgb& baseF0, float filmIor, float thickness, float cosine) {
-  // The film's index approaches that of air as its thickness approaches 0
-  // (KHR_materials_iridescence).
+  // The film's index approaches air's as its thickness approaches 0 (KHR_materials_iridescence).
   const float film = glm::mix(1.0f, filmIor, glm::smoothstep(0.0f, 0.03f, thickness));
   const float sin2 = (1 - cosine * cosine) / (film * film);
   if (sin2 >= 1) return Rgb(1);

@@ -8,7 +8,7 @@
 namespace chromeball {
 
 // Fresnel's equations: the fraction of unpolarised light that is reflected; 1 for total internal
-// reflection. `cosine`: of the angle of incidence, on the near side.
+// reflection. `cosine`: that of the angle of incidence, on the near side.
 inline float fresnelDielectric(float cosine, float eta) {
   const float sin2 = (1 - cosine * cosine) / (eta * eta);  // on the far side, by Snell's law
   if (sin2 >= 1) return 1;

@@ -18,8 +18,8 @@ float normalReflectance(float eta) {
 }
 
 // F0 of KHR_materials_specular over F0 of the index `front` against air. The same ratio is used in
-// any surrounding medium, so that the reflectance of a body vanishes as its index approaches that
-// of its surroundings.
+// any surrounding medium, so that the reflectance of a body vanishes as its index approaches its
+// surroundings'.
 float specularTint(const MaterialPoint& m, int channel, float front) {
   const float own = normalReflectance(front);
   return own > 0 ? m.dielectricF0[channel] / own : m.dielectricF90;

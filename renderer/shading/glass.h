@@ -35,7 +35,7 @@ class Glass {
   bool has(Lobes lobes) const { return !smooth_ && lobes == lobes_; }
   const vec3& normal() const { return frame_.z; }
   float albedo() const;
-  // What is refracted is looked up in the direction inside the body, that of green.
+  // Refracted light is looked up in the direction inside the body, for green.
   void addTo(MapLobes& lobes, float weight) const;
   void keepOnly(KeptLobes) {}  // glass has a limit of its own
 
@@ -44,7 +44,7 @@ class Glass {
   float fresnel(float cosine, int channel) const;
   BsdfValue reflect(const vec3& wi) const;
   // Refraction with the index of `channel`; the other channels use the same direction. The pdf is
-  // that of refraction by sample().
+  // sample()'s for refraction.
   BsdfValue refract(const vec3& wi, int channel) const;
   // Probability of sampling reflection at a facet.
   float reflectProbability(const Rgb& reflectance) const {

@@ -61,7 +61,7 @@ Layered::Layered(const MaterialPoint& m, const ExtendedPoint& e, const Refractiv
   chooseProbabilities();
 }
 
-// In proportion to what the lobes reflect, which is in `probability`.
+// Makes the probabilities proportional to what the lobes reflect, which is in `probability`.
 void Layered::chooseProbabilities() {
   float total = 0;
   forEachLobe(*this, [&](auto& part) { total += part.probability; });

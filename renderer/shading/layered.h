@@ -25,7 +25,7 @@ namespace chromeball {
 // extensions: that conserves energy exactly but is not reciprocal.
 class Layered {
  public:
-  // As for MetallicRoughness.
+  // The arguments are as for MetallicRoughness.
   Layered(const MaterialPoint& material, const ExtendedPoint& extended,
           const RefractiveIndex& index, const Surface& surface, const vec3& wo,
           const BsdfTables& tables, float mirrorAlpha = 0);

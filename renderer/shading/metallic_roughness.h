@@ -27,7 +27,7 @@ class MetallicRoughness {
       : MetallicRoughness(material, material.baseColor * (1 - material.metallic),
                           material.baseColor, surface, wo, tables, mirrorAlpha) {}
 
-  // With the diffuse albedo and the metal's F0 given instead of the base colour.
+  // Takes the diffuse albedo and the metal's F0 instead of the base colour.
   MetallicRoughness(const MaterialPoint& material, const Rgb& diffuse, const Rgb& metalF0,
                     const Surface& surface, const vec3& wo, const BsdfTables& tables,
                     float mirrorAlpha);

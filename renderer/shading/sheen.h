@@ -23,7 +23,7 @@ class Sheen {
   float albedo() const { return luminance(color_) * whiteAlbedo_; }
   // Fraction of light that does not reach the layers beneath.
   float surfaceAlbedo() const { return std::min(maxComponent(color_) * whiteAlbedo_, 1.0f); }
-  // As if it were diffuse.
+  // Treats the sheen as if it were diffuse.
   void addTo(MapLobes& lobes, float weight) const {
     lobes.addDiffuse(weight * whiteAlbedo_ * color_, frame_.z);
   }

@@ -30,7 +30,7 @@ double numberIn(const Metadata& metadata, const std::string& key) {
   return number;
 }
 
-// What a file says of which render it is, so that none is taken for another.
+// The attributes by which a file identifies its render, so that none is taken for another.
 Metadata attributesOf(const RenderKey& key, uint64_t studySeed) {
   return {
       {"strategy", key.strategy},

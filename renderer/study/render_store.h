@@ -21,7 +21,7 @@ struct StoredRender {
 
 class RenderStore {
  public:
-  // `size`: of all renders of the study.
+  // `size`: that of all renders of the study.
   RenderStore(const Study& study, const ImageSize& size) : study_(study), size_(size) {}
 
   // Creates the folder if it does not exist. Throws RunError if that fails.

@@ -20,7 +20,7 @@ std::string resultsCsv(const StudyResults& results);
 nlohmann::ordered_json resultsJson(const Study& study, const StudyResults& results,
                                    const Machine& machine);
 
-// For a terminal: the strategies with the largest common budget, the most efficient first.
+// A table for a terminal: the strategies with the largest common budget, the most efficient first.
 std::string resultsTable(const Study& study, const StudyResults& results);
 
 // The cells of that table, in its order.

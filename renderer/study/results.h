@@ -23,7 +23,7 @@ struct Cell {
   double prepareSeconds = 0;          // time to build the strategy, once for all its renders
   double noise = 0;                   // mean of the noise that the renders themselves report
   double invalidSamples = 0;          // sum over the repeats
-  // 1 / (relMse seconds), divided by that of the baseline for the same budget. Times are compared
+  // 1 / (relMse seconds), divided by the baseline's value for the same budget. Times are compared
   // repeat by repeat: strategies alternate, so that a machine whose speed drifts slows all
   // strategies of a repeat alike.
   Estimate efficiency;
@@ -65,7 +65,7 @@ StudyResults studyResults(const Study& study, const RenderStore& store, const Re
 const Cell* findCell(const StrategyResult& strategy, const Budget& budget);
 
 // The largest budget (with isWanted(budget)) for which all strategies of this run have a cell;
-// nullopt if there is none. Strategies of earlier runs may have no cell for it.
+// nullopt if there is none. Strategies from earlier runs need not have a cell for it.
 std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results);
 std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results,
                                           bool (*isWanted)(const Budget&));

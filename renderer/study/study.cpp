@@ -103,7 +103,7 @@ void addMode(const std::string& name, const std::string& location, Row& row) {
              fmt::join(known, ", "), kDiffuseDepth, kSpecularDepth, kCache);
 }
 
-// As a render of nothing else would be checked.
+// Checks a row as if it were the only render.
 void check(const Row& row, const std::string& location) {
   RenderDescription alone;
   row.applyTo(alone);

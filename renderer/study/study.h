@@ -30,8 +30,8 @@ struct RenderKey {
 };
 inline constexpr const char* kReference = "reference";
 
-// The seed of a render: a hash of its key. Seeds of the reference have the top bit set and those of
-// all other renders do not, so that no render shares a seed with the reference.
+// The seed of a render: a hash of its key. Seeds of the reference have the top bit set, all others
+// do not, so that no render shares a seed with the reference.
 uint64_t seedOf(const RenderKey& key, uint64_t studySeed);
 
 struct Study {
@@ -41,14 +41,14 @@ struct Study {
   int repeats = 4;                      // of each strategy and budget
   std::string baseline;                 // one of the strategies
 
-  // Strategies and budgets in the results: the above, and those that earlier runs left in the
+  // Strategies and budgets in the results: the above, and the ones that earlier runs left in the
   // folder.
   std::vector<std::string> shownStrategies;
   std::vector<Budget> shownBudgets;
 
   std::string referenceFile;                 // empty: the reference is rendered by
   std::string referenceStrategy;             // this strategy with
-  int referenceSamples = 0;                  // so many samples per pixel in all parts together
+  int referenceSamples = 0;                  // samples per pixel of all parts together
   static constexpr int kReferenceParts = 8;  // independent; their variance gives the error
   static constexpr int kMinRepeats = 3;      // the minimum to estimate the variance of a strategy
 
@@ -58,13 +58,13 @@ struct Study {
   std::string identity;
 
   RenderKey referencePart(int part) const;
-  // In the order of rendering. Strategies alternate, so that a machine whose speed drifts does not
-  // favour any of them.
+  // All renders, in the order of rendering. Strategies alternate, so that a machine whose speed
+  // drifts does not favour any of them.
   std::vector<RenderKey> renders() const;
 };
 
-// What a study compares: a lighting strategy, with the integrator and the ways of rendering that it
-// is combined with.
+// The subject of a comparison: a lighting strategy, with the integrator and the ways of rendering
+// that it is combined with.
 
 // A way of rendering besides the lighting strategy.
 enum class Mode {
@@ -77,9 +77,9 @@ enum class Mode {
   ReflectionOcclusion
 };
 
-// By name: STRATEGY, or STRATEGY+MODE+..., as "importance+regularize+denoise" or
-// "suns+environment-map+ao". The integrators but `path` are such modes, and so are
-// "diffuse-depth:N", "specular-depth:N" and "irradiance-cache:ERROR".
+// A row of the study. Its name is STRATEGY, or STRATEGY+MODE+..., such as
+// "importance+regularize+denoise" or "suns+environment-map+ao". The integrators but `path` are such
+// modes, and so are "diffuse-depth:N", "specular-depth:N" and "irradiance-cache:ERROR".
 struct Row {
   std::string strategy;  // complete name ("median-cut:64")
   IntegratorKind integrator = IntegratorKind::Path;
@@ -92,7 +92,7 @@ struct Row {
   std::string name() const;
   // `settings` with these modes, and no others.
   RenderSettings applied(RenderSettings settings) const;
-  // The same of a description, with the strategy.
+  // The same for a description, with the strategy.
   void applyTo(RenderDescription& description) const;
 };
 

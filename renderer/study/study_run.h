@@ -18,8 +18,8 @@ namespace chromeball {
 
 class StudyRun {
  public:
-  // Builds all rows (study.h), including that of the reference. Throws InputError for unknown
-  // names. All arguments must outlive the run.
+  // Builds all rows (study.h), including the reference's. Throws InputError for unknown names. All
+  // arguments must outlive the run.
   StudyRun(const Study& study, const RenderStore& store, const LoadedScene& loaded,
            const RenderSettings& settings);
 
@@ -45,7 +45,7 @@ class StudyRun {
     double secondsPerSample = 0;  // of the last render; 0 if there was none
   };
 
-  // Estimates of the render time: of one render, and of all missing ones from index `from` on.
+  // The estimated render time: of one render, and of all missing ones from index `from` on.
   double estimatedSeconds(const RenderKey& key) const;
   double estimatedSecondsMissing(size_t from) const;
   void renderOne(const RenderKey& key, const Progress& progress, const std::atomic<bool>& stop);

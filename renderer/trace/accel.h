@@ -26,9 +26,9 @@ struct FilterUse;
 // shadow rays pass smooth thin walls; scenes without such surfaces have no filter functions.
 class Accel {
  public:
-  // `masks`: by instance; empty: kAllInstances for each. The scene must outlive this. `earlier`: of
-  // a structure over the same Scene before it changed, from which what did not change is taken;
-  // that structure must not be used any more. Throws RunError.
+  // `masks`: by instance; empty: kAllInstances for each. The scene must outlive this. `earlier`:
+  // the geometry of a structure over the same Scene before it changed; its unchanged parts are
+  // reused, and that structure must not be used any more. Throws RunError.
   explicit Accel(const Scene& scene, const std::vector<RayMask>& masks = {},
                  std::shared_ptr<BuiltGeometry> earlier = nullptr);
   ~Accel();
@@ -45,8 +45,8 @@ class Accel {
   // (Material::straightShadows), or some are masked or blended.
   bool needsMedia() const { return needsMedia_; }
 
-  // The closest hit; none for a ray with a NaN or coordinates beyond 1e18. `key` seeds the random
-  // choice at blended surfaces, which let the ray pass with probability 1 - alpha.
+  // The closest hit; none for a ray with a NaN or with coordinates beyond 1e18. `key` seeds the
+  // random choice at blended surfaces, which let the ray pass with probability 1 - alpha.
   bool intersect(const Ray& ray, uint32_t key, Hit& hit, RayMask mask = kAllInstances) const;
 
   // The closest hits of several rays, faster than one at a time. Coherent: rays that are close
@@ -55,9 +55,9 @@ class Accel {
   void intersect(std::span<const Ray> rays, std::span<const uint32_t> keys, Coherence coherence,
                  std::span<std::optional<Hit>> hits, RayMask mask = kAllInstances) const;
 
-  // Calls visit(hit) for all other surfaces at the place of `surface`, which the ray has hit: those
-  // that a ray which continues from Surface::rayOrigin() on its other side would miss. `hit` and
-  // `key`: of intersect().
+  // Calls visit(hit) for all other surfaces at the place of `surface`, which the ray has hit: the
+  // surfaces that a ray continuing from Surface::rayOrigin() on its other side would miss. `hit`
+  // and `key`: intersect()'s.
   template <class Visit>
   void forEachCoincident(const Ray& ray, const Hit& hit, const Surface& surface, uint32_t key,
                          RayMask mask, Visit&& visit) const {
@@ -117,7 +117,7 @@ class Accel {
 
 // Rays that leave a surface.
 
-// At the time at which the surface is seen.
+// A ray from the surface, at the time at which the surface is seen.
 inline Ray rayFrom(const Surface& surface, const vec3& direction, float tMax = INFINITY) {
   return {surface.rayOrigin(direction), direction, tMax, surface.time};
 }

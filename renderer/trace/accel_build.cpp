@@ -64,14 +64,14 @@ std::vector<uint32_t> staticInstances(const Scene& scene, const std::vector<int>
   return still;
 }
 
-// Equal for instances that rays cannot tell from each other.
+// A key that is equal for instances that rays cannot tell apart.
 auto placementOf(const Scene& scene, uint32_t instance, RayMask mask) {
   const Instance& i = scene.instances[instance];
   return std::tuple(i.mesh, i.material, mask, columnsOf(i.toWorld.value_or(Transform{})));
 }
 
-// By instance: whether there are enough equal ones without it, more of which would only cost time.
-// Of opaque ones the first is enough; of those that light passes, kMost are kept.
+// For each instance, whether there are enough equal ones without it: more would only cost time. One
+// opaque instance is enough; of instances that light passes, kMost are kept.
 std::vector<bool> redundantInstances(const Scene& scene, const std::vector<int>& uses,
                                      const Accel& accel) {
   constexpr size_t kMost = 8;
@@ -129,8 +129,8 @@ Accel::Accel(const Scene& scene, const std::vector<RayMask>& masks,
 
 Accel::~Accel() { rtcReleaseScene(scene_); }
 
-// Geometry i of the top scene is instance i of ours; what does not move is one more geometry, so
-// that it is built once.
+// Geometry i of the top scene is instance i of ours; the instances that do not move are one more
+// geometry, so that it is built once.
 void Accel::build() {
   const Scene& scene = described_;
   const FilterUse use = filterUse(scene);

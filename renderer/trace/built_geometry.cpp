@@ -13,8 +13,8 @@
 namespace chromeball {
 namespace {
 
-// Of a time step. Embree's memory, because it reads 16 bytes per vertex, past the end of an array
-// of vec3. Null if there is none.
+// The vertices of a time step, in Embree's memory, because it reads 16 bytes per vertex, past the
+// end of an array of vec3. Null if there is none.
 vec3* newVertices(RTCGeometry geometry, size_t step, size_t count) {
   return static_cast<vec3*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, unsigned(step), RTC_FORMAT_FLOAT3, sizeof(vec3), count));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Embree's structures over single meshes and over what does not move. The acceleration structures
-// of several frames share them.
+// Embree's structures over single meshes and over instances that do not move. The acceleration
+// structures of several frames share them.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace chromeball {
 // Which hits call the filter functions (trace/filter.h).
 struct FilterUse {
   std::vector<bool> ofMesh;  // by mesh: whether any instance lets light pass
-  // In the whole scene.
+  // Properties of the whole scene.
   bool any = false, hasAlpha = false, needsMedia = false;
 };
 
@@ -35,17 +35,17 @@ class BuiltGeometry {
 
   const Scene& scene() const { return scene_; }
   RTCDeviceTy* device() const { return device_; }
-  int builds() const { return builds_; }  // of meshes and of what does not move, so far
+  int builds() const { return builds_; }  // so far, of meshes and of the instances that do not move
 
-  // A build begins: keeps what an earlier one made of the meshes that the scene still has.
+  // Begins a build: keeps the structures of an earlier one for meshes that the scene still has.
   void begin(FilterUse filters);
 
   RTCSceneTy* newScene() const;
   RTCGeometryTy* newGeometry(int mesh) const;
-  // In world space, of an instance that changes its shape while the shutter is open.
+  // Geometry in world space for an instance that changes its shape while the shutter is open.
   RTCGeometryTy* newMovingGeometry(const Instance& instance) const;
   RTCSceneTy* meshScene(int mesh);
-  // Of instances whose meshes are stored in world space; `mask` by instance, empty: all.
+  // A scene of instances whose meshes are stored in world space. `mask`: by instance; empty: all.
   RTCSceneTy* staticScene(const std::vector<uint32_t>& instances, const std::vector<RayMask>& mask);
 
   // Adds the geometry, which it takes, to the scene.
@@ -66,7 +66,7 @@ class BuiltGeometry {
     bool operator==(const Member&) const = default;
   };
   void releaseStatic();
-  // Without vertices.
+  // Triangles without vertices.
   RTCGeometryTy* newTriangles(int mesh) const;
 
   const Scene& scene_;

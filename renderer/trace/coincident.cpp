@@ -32,13 +32,13 @@ class CoincidentTriangle {
     return rayOffset(floats_[0], floats_[1], floats_[2], vec3(normal_ / area_));
   }
 
-  // Whether a point of the plane lies in the triangle, at least `margin` metres from its edges. Of
-  // two triangles that share an edge, one has the points of the edge.
+  // Whether a point of the plane lies in the triangle, at least `margin` metres from its edges. If
+  // two triangles share an edge, exactly one contains the points of the edge.
   bool contains(const dvec3& point, double margin) const {
     for (int i = 0; i < 3; ++i) {
       const dvec3 &start = corners_[size_t(i)], &end = corners_[size_t((i + 1) % 3)];
       const bool owns = isBefore(start, end);
-      // In the same order for both triangles, so that the results are exactly opposite.
+      // The ends have the same order for both triangles, so that the results are exactly opposite.
       const dvec3 &from = owns ? start : end, &to = owns ? end : start;
       const double side = glm::dot(glm::cross(to - from, point - from), normal_) / area_;
       const double inwards = owns ? side : -side, least = margin * glm::length(to - from);
@@ -79,7 +79,7 @@ struct CoincidentSearch {
   void* visitor;
 };
 
-// The surface hides what lies up to rayOffset behind it along the normal: rays start there. By
+// The surface hides others up to rayOffset behind it along the normal: rays start there. By
 // rounding errors a coincident triangle may also lie a little in front. The neighbours of the hit
 // triangle in its mesh touch it at its edges, which does not count.
 void testTriangle(const CoincidentSearch& s, uint32_t instanceIndex, uint32_t triangleIndex) {

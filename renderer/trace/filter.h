@@ -16,7 +16,7 @@ struct Query {
   QueryContext embree;  // first, so that a filter can cast back
   uint32_t key = 0;     // of Accel::intersect()
   vec3 direction{0};
-  // Of a shadow ray:
+  // These are for shadow rays:
   float length = 0;                         // may be infinite
   Rgb transmittance{1};                     // of surfaces
   Rgb opticalDepth{0};                      // of bodies
@@ -31,15 +31,15 @@ inline uint32_t instanceOf(const Scene& scene, uint32_t topInstance, uint32_t ge
   return topInstance < scene.instances.size() ? topInstance : geometry;
 }
 
-// Whether a ray meets a surface that it hits: with probability alpha. A ray meets a body as a
-// whole or not at all: its coverage is decided where the ray enters, and the ray meets the back
-// always, to be ignored there if the ray is not inside (Media::ignores).
+// Whether a ray meets a surface that it hits: with probability alpha. A ray meets a body as a whole
+// or not at all: its coverage is decided where the ray enters, and the ray always meets the back,
+// which is ignored if the ray is not inside (Media::ignores).
 bool isCovered(const Scene& scene, const Hit& hit, const vec3& direction, float time, uint32_t key);
 
 // Ignores the hit unless isCovered().
 void filterClosest(const RTCFilterFunctionNArguments* arguments);
 
-// Multiplies Query::transmittance by that of the surface; ignores the hit unless it is now 0.
+// Multiplies Query::transmittance by the surface's; ignores the hit unless it is now 0.
 void filterShadow(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace chromeball

@@ -16,7 +16,7 @@ namespace {
 using glm::dvec3;
 using Corners = std::array<vec3, 3>;
 
-// A triangle of which up to five planes cut off corners.
+// A triangle with corners cut off by up to five planes.
 class ClippedTriangle {
  public:
   explicit ClippedTriangle(const Corners& corners) : count_(3) {
@@ -44,7 +44,7 @@ class ClippedTriangle {
       sum += glm::cross(points_[i - 1] - points_[0], points_[i] - points_[0]);
     return 0.5 * glm::length(sum);
   }
-  // From one corner to the farthest.
+  // The distance from one corner to the farthest.
   double length() const {
     double longest = 0;
     for (size_t i = 1; i < count_; ++i)
@@ -57,7 +57,7 @@ class ClippedTriangle {
   size_t count_;
 };
 
-// At least rayOffset() for any normal.
+// An offset that is at least rayOffset() for any normal.
 double largestOffset(const Corners& corners) {
   return double(rayOffset(corners[0], corners[1], corners[2], vec3(1)));
 }
@@ -109,7 +109,8 @@ class Base {
 
 }  // namespace
 
-// `time`: at which the places are compared. `budget`: of comparisons, which it reduces.
+// `time`: when the places are compared. `budget`: the remaining number of comparisons, which it
+// reduces.
 void SharedPlaces::addPartnersOf(const Accel& accel, uint32_t instance, uint32_t triangle,
                                  float time, std::atomic<int64_t>& budget) {
   const Scene& scene = accel.scene();
@@ -138,7 +139,7 @@ SharedPlaces::SharedPlaces(const Accel& accel) {
   std::vector<float> times{0};
   if (std::ranges::any_of(scene.instances, [](const Instance& i) { return i.motion != nullptr; }))
     times = {0, 0.25f, 0.5f, 0.75f, 1};
-  // More comparisons would take seconds: then every triangle counts as one that shares its place.
+  // More comparisons would take seconds: beyond that, every triangle counts as sharing its place.
   std::atomic<int64_t> budget = 1'000'000 + 64 * int64_t(scene.triangleCount());
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles that lie where an emitting one lies.
+// Triangles that lie in the same place as an emitting one.
 #pragma once
 
 #include <atomic>
@@ -12,9 +12,9 @@
 namespace chromeball {
 
 // The triangles of a scene, emitting or not, that coincide with an emitting one over some area, and
-// those emitting ones. Which of the surfaces at such a place a ray hits is arbitrary, so that paths
-// and light samples must ask what a path meets there (transport/place.h). A few others may be
-// among them.
+// these emitting triangles themselves. Which of the surfaces at such a place a ray hits is
+// arbitrary, so that paths and light samples must ask what a path meets there (transport/place.h).
+// A few others may be among them.
 class SharedPlaces {
  public:
   explicit SharedPlaces(const Accel& accel);

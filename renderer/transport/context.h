@@ -83,14 +83,15 @@ struct GuidedBounce {
   Rgb before{0};          // radiance that the path had found up to the bounce
   bool isNew = false;
 
-  // The bounce's vertex is complete; what the path finds from now on is found behind it.
+  // Called when the bounce's vertex is complete: light that the path finds from now on is found
+  // behind it.
   void startRest(const Rgb& radiance) {
     if (isNew) before = radiance;
     isNew = false;
   }
 };
 
-// What guides learn from paths.
+// The records from which guides learn.
 struct GuideRecords {
   bool wantsLights = true;
   std::vector<LightRecord> lights;
@@ -118,7 +119,7 @@ struct PathContext {
         std::isfinite(record.integrand / record.density))
       records->lights.push_back(record);
   }
-  // At the end of a path.
+  // Adds the record of a guided bounce at the end of its path.
   void addRecord(const GuidedBounce& bounce, const Rgb& radiance) const {
     if (!records || bounce.record.lobesPdf == 0) return;
     BounceRecord record = bounce.record;

@@ -91,7 +91,7 @@ DirectLight::LightSample DirectLight::ofGuide(const GuideRegion& region,
   return {{sample.direction, found.radiance / pdf, pdf}, found.pdf};
 }
 
-// f cos with the MIS weight of a light sample: what its irradiance is multiplied by.
+// f cos with the MIS weight of a light sample: the factor of its irradiance.
 Rgb DirectLight::weighted(const DirectionSample& light, const BsdfValue& bsdf) const {
   return bsdf.fCos * (light.isDelta ? 1 : lightSampleWeight(settings_.mis, light.pdf, bsdf.pdf));
 }
@@ -109,7 +109,7 @@ LightRecord DirectLight::record(const LightPoint& point, const LightSample& ligh
           .bsdfPdf = bsdf.pdf};
 }
 
-// `scattered`: what reaches the viewer per irradiance of the sample. `source`: as
+// `scattered`: the radiance that reaches the viewer per irradiance of the sample. `source`: as for
 // LightGroups::rangeOf().
 void DirectLight::addToGroups(std::optional<size_t> source, const Vertex& vertex,
                               const DirectionSample& light, const Rgb& scattered,
@@ -196,7 +196,7 @@ Rgb DirectLight::ofScene(size_t source, const Vertex& vertex, PathContext& conte
     const BsdfValue broad = vertex.bsdf.evaluate(light.wi);
     const BsdfValue narrow = narrowLobes(vertex.bsdf.bsdf(), light.wi);
     if (isBlack(broad.fCos) && isBlack(narrow.fCos)) continue;
-    // To a point that is offset, too, so that neither surface shadows itself.
+    // The end point is offset too, so that neither surface shadows itself.
     Ray ray = rayFrom(vertex.surface, light.wi, light.distance);
     if (isSurface) {
       ray.tMax = glm::length(light.end.position - ray.origin);

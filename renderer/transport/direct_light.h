@@ -54,7 +54,7 @@ class DirectLight {
         settings_(settings),
         takesOneSample_(lighting.takesOneSample()) {}
 
-  // From the probe, with the strategy's samples; broad lobes only.
+  // Light from the probe, by the strategy's samples; broad lobes only.
   Rgb probe(const Vertex& vertex, PathContext& context) const;
   // The same, up to the shadow ray, for a given sample of the strategy.
   void defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
@@ -63,7 +63,7 @@ class DirectLight {
   // LightSource::escaped() returns for light.point and the direction of the shadow ray.
   void complete(const LightSource::Escaped& found, DeferredLight& light,
                 const PathContext& context) const;
-  // From one of World::sources, which lights narrow lobes too.
+  // Light from one of World::sources, which lights narrow lobes too.
   Rgb ofScene(size_t source, const Vertex& vertex, PathContext& context) const;
 
  private:
@@ -74,7 +74,7 @@ class DirectLight {
   };
   // Whether a sample of the guide takes the place of the strategy's, except its delta samples.
   static bool guideChooses(const Vertex& vertex, const PathContext& context);
-  // With the pdf of the mixture.
+  // The strategy's sample, or one of the guide, with the pdf of the mixture.
   static LightSample ofStrategy(const Vertex& vertex, const DirectionSample& own);
   static LightSample ofGuide(const GuideRegion& region, const DirectionTree::Sample& sample,
                              const LightSource::Escaped& found);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer: what a ray finds that hits nothing.
+// PathTracer: the light that a ray finds if it hits nothing.
 #include "transport/light_groups.h"
 #include "transport/path.h"
 #include "transport/path_settings.h"
@@ -18,9 +18,9 @@ Rgb PathTracer::escapedRadiance(const PathState& state, PathContext& context) co
   return weighted(state, lighting_.escaped(state.from, direction), context) + distant;
 }
 
-// From World::sources, which light narrow lobes too: only the camera, and what it sees by delta
-// lobes, sees background(). After a bounce that is not delta, a delta lobe (glass before the light)
-// finds all of the light, which light samples cannot serve.
+// Light from World::sources, which light narrow lobes too: only the camera, and what it sees by
+// delta lobes, sees background(). After a bounce that is not delta, a delta lobe (glass before the
+// light) finds all of the light, which light samples cannot serve.
 Rgb PathTracer::distantRadiance(const PathState& state, PathContext& context) const {
   const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
   Rgb sum(0);

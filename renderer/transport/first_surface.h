@@ -27,8 +27,8 @@ FirstHit firstHitAt(const Instance& instance, const Surface& surface, const Mate
 std::optional<FirstSurface> firstSurface(const PathTracer& tracer, PathState& state,
                                          const std::optional<Hit>& hit, PathContext& context);
 
-// The same for integrators that treat only reflected light in their own way: adds what the path
-// sees without reflection to `radiance`, background or emission; nullopt if nothing is reflected.
+// The same for integrators that treat only reflected light in their own way: adds the background or
+// emission that the path sees without reflection to `radiance`; nullopt if nothing is reflected.
 std::optional<FirstSurface> firstReflector(const PathTracer& tracer, PathState& state,
                                            const std::optional<Hit>& hit, PathContext& context,
                                            Rgb& radiance);

@@ -19,7 +19,7 @@ class GuidedBsdf {
 
   const Bsdf& bsdf() const { return bsdf_; }
 
-  // Of broad lobes, with the pdf of the mixture.
+  // The value of the broad lobes, with the pdf of the mixture.
   BsdfValue evaluate(const vec3& wi) const {
     BsdfValue value = bsdf_.evaluate(wi);
     if (lobes_) value.pdf = mixed(value.pdf, lobes_->pdf(position_, wi));
@@ -30,7 +30,7 @@ class GuidedBsdf {
     float bsdfPdf = 0;   // without the guide; 0 for a delta
     float lobesPdf = 0;  // 0 where the bounce is not guided
     float fraction = 0;  // of guided bounces
-    float ratio = 1;     // pdf / BSDF pdf, also of a delta: what the guide divides the weight by
+    float ratio = 1;     // pdf / BSDF pdf, also of a delta: the guide divides the weight by it
   };
   // False if the light is absorbed.
   bool sample(const PixelSampler& sampler, Bounce& out) const;

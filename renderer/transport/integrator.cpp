@@ -51,7 +51,7 @@ void PathBatch::trace(const PathTracer& tracer, uint32_t firstSample, PathContex
   }
 }
 
-// The sampler's next numbers are those of the path's next vertex.
+// The sampler continues with the numbers for the path's next vertex.
 void PathBatch::select(uint32_t path, Task& task) {
   task.context.sampler.startSample(task.firstSample + path);
   task.context.sampler.startVertex(paths_[path].depth);

@@ -13,7 +13,8 @@
 
 namespace chromeball {
 
-// A camera ray through pixel (x, y) and its closest hit. `half`: of the pixel's samples (Film).
+// A camera ray through pixel (x, y) and its closest hit. `half`: which half of the pixel's samples
+// (Film) it belongs to.
 struct CameraSample {
   int x, y, half;
   Ray ray;
@@ -84,8 +85,8 @@ class PathIntegrator : public Integrator {
 // Paths of one pixel that are traced together, a vertex of each at a time: their rays form packets,
 // and their reads from the probe's tables and the meshes overlap.
 
-// The estimates are those of PathTracer::radiance(). Used again for the next paths, since clearing
-// its arrays would take a noticeable part of the time.
+// Gives the same estimates as PathTracer::radiance(). A batch is reused for the next paths, since
+// clearing its arrays would take a noticeable part of the time.
 class PathBatch {
  public:
   static constexpr size_t kMaxPaths = LightSource::kMaxMany;

@@ -14,8 +14,8 @@
 
 namespace chromeball {
 
-// The groups of a scene: those of the strategy, then those of the scene's sources
-// (LightSource::groups()), each node that emits, and one for all unlit materials.
+// The groups of a scene: first the strategy's, then the scene's sources (LightSource::groups()),
+// each node that emits, and one for all unlit materials.
 class LightGroups {
  public:
   LightGroups(const World& world, const LightSource& lighting);
@@ -23,8 +23,8 @@ class LightGroups {
   // Unique; without the characters that separate layers and gains: . , = and spaces.
   const std::vector<std::string>& names() const { return names_; }
 
-  // Of the probe's strategy, if `source` is null, or of one of World::sources: indices of the
-  // first group and of the one after the last.
+  // The groups of the probe's strategy if `source` is null, else of one of World::sources: indices
+  // of the first group and of the one after the last.
   std::array<size_t, 2> rangeOf(std::optional<size_t> source) const {
     const size_t i = source ? *source + 1 : 0;
     return {ends_[i], ends_[i + 1]};
@@ -34,7 +34,7 @@ class LightGroups {
       return ofInstance(scene_.instances[light.end.instance]);
     return int(rangeOf(source)[0]) + light.group;
   }
-  // Of the radiance that an instance emits.
+  // The group of the radiance that an instance emits.
   int ofInstance(const Instance& instance) const {
     return scene_.materials[size_t(instance.material)].unlit ? unlit_
                                                              : ofNode_[size_t(instance.node)];
@@ -51,13 +51,13 @@ class LightGroups {
   std::vector<int> ofNode_;  // -1 for a node that does not emit
 };
 
-// What a path would find of unit radiance from one direction of the probe.
+// The throughput of a path for unit radiance from one direction of the probe.
 struct DirectedLight {
   vec3 wi;  // unit
   Rgb throughput;
 };
 
-// Where a path adds what it finds, beside its whole radiance.
+// The sums to which a path adds its light by group, in addition to its whole radiance.
 class GroupSums {
  public:
   // `sums`: one element per group. `scratch` keeps its capacity. `directions`, if not null, gets
@@ -69,12 +69,13 @@ class GroupSums {
   void addEmitted(const Instance& instance, const Rgb& radiance) {
     sums_[size_t(groups_.ofInstance(instance))] += radiance;
   }
-  // Of a delta light or a surface.
+  // Adds a sample of a delta light or a surface.
   void addSample(std::optional<size_t> source, const DirectionSample& light, const Rgb& radiance) {
     sums_[size_t(groups_.ofSample(source, light))] += radiance;
   }
   // `throughput` times the radiance of light.escaped(), by group. Each group is independent of the
-  // others, so that its bits scale with those of its source. `source`: as LightGroups::rangeOf().
+  // others, so that its bits scale with those of its source. `source`: as for
+  // LightGroups::rangeOf().
   void addEscaped(const LightSource& light, std::optional<size_t> source, const LightPoint& point,
                   const vec3& wi, const Rgb& throughput);
   // `throughput` times light.background().

@@ -26,7 +26,7 @@ class Media {
            find(&material) < 0;
   }
 
-  // Of the current medium, 1/m.
+  // The attenuation coefficient of the current medium, 1/m.
   Rgb attenuation() const {
     return count_ == 0 ? Rgb(0) : bodies_[size_t(count_ - 1)]->extended->attenuation;
   }
@@ -46,7 +46,7 @@ class Media {
   // leaves the body, a reflected ray changes nothing.
   Media& follow(const Surface& surface, const vec3& wi);
 
-  // The last that was entered of this material, as an index into bodies(); -1: none.
+  // The last entered body with this material, as an index into bodies(); -1: none.
   int find(const Material* body) const;
 
  private:

@@ -8,8 +8,8 @@
 
 namespace chromeball {
 
-// Whether the path ignores the surface: the back of a single-sided one, seen by the camera or in a
-// mirror, or that of a body which the path has not entered.
+// Whether the path ignores the surface: the back of a single-sided surface, seen by the camera or
+// in a mirror, or the back of a body that the path has not entered.
 inline bool ignores(const PathState& state, const Material& material, bool frontFace) {
   return (state.isDelta && !frontFace && material.hidesBack()) ||
          state.media.ignores(material, frontFace);
@@ -23,8 +23,9 @@ inline bool mayPass(const PathState& state, const Surface& surface) {
 }
 
 // The front of a single-sided surface reflects light and also passes light that arrives at its
-// back. A path that is no camera's or mirror's follows one of the two at random, with twice the
-// throughput; the MIS weights stay valid, because shadow rays pass the front too.
+// back. A path that comes neither from the camera nor from a mirror follows one of the two at
+// random, with twice the throughput; the MIS weights stay valid, because shadow rays pass the front
+// too.
 inline bool passesFromBehind(const PathState& state, const Material& material, bool frontFace) {
   return !state.isDelta && frontFace && material.backLetsLightThrough();
 }
@@ -43,7 +44,7 @@ inline bool goesStraight(const PathState& state, const Material& material) {
 // rays from there pass the surface too.
 inline void passStraight(PathState& state, const Surface& surface) {
   state.leave(surface, state.ray.direction);
-  if (!surface.material->isBody()) ++state.straight;  // that of a body is a transmission
+  if (!surface.material->isBody()) ++state.straight;  // passing a body's surface is a transmission
 }
 
 // For a path without bounces left: continues straight through the surface, since light from behind

@@ -13,8 +13,8 @@
 namespace chromeball {
 namespace {
 
-// Whether the medium at the start of a shadow ray to the probe matters, so that it cannot wait for
-// those of other paths.
+// Whether the medium at the start of a shadow ray to the probe matters: if so, the ray cannot wait
+// for the shadow rays of other paths.
 bool needsMedium(const Accel& accel, const PathState& state, const Surface& surface) {
   return state.place ||
          (accel.needsMedia() && (state.media.inside() || surface.material->isBody()));
@@ -96,7 +96,7 @@ const CausticGuide* PathTracer::guideOf(const PathState& state) const {
   return state.guideRatio < kLeastRatio ? nullptr : settings_.caustics;
 }
 
-// A bounce that the guide might have chosen. The rest of the first one is recorded.
+// Notes a bounce that the guide might have chosen. The light found after the first one is recorded.
 void PathTracer::noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                             const PathContext& context) {
   constexpr float kLargest = 1e20f;  // no overflow on long paths
@@ -195,7 +195,7 @@ ExtendedPoint PathTracer::extendedPointAt(const PathState& state, const Instance
   Bsdf bsdf(material, extendedPointAt(state, instance, surface),
             state.media.refractiveIndex(surface, state.throughput), surface, -state.ray.direction,
             world_.bsdfTables, mirrorAlpha_);
-  // Bodies have a limit of their own, and a straight passage through a sheet is no bounce.
+  // Bodies have their own limit, and a straight passage through a sheet is no bounce.
   if (limitsKinds_ && !limitKinds(state, bsdf) && surface.material->extended->transmission == 0)
     return false;
   return scatterAs<true>(state, surface, bsdf, context);

@@ -90,13 +90,14 @@ class PathTracer {
                         PathContext& context) const;
 
   std::optional<Hit> closestHit(const Ray& ray, PathContext& context) const;
-  // What the path meets next.
+  // The hit of the next surface that the path meets.
   std::optional<Hit> nextHit(const PathState& state, PathContext& context) const;
 
   // The surface that the path meets where it has hit one: another one if that coincides with it and
   // comes first. nullopt if the path ignores the surface and no other one coincides with it.
   std::optional<Hit> metAt(PathState& state, const Hit& hit, PathContext& context) const;
-  // The same, if a choice at random is not to change the throughput: it is left in `weight`.
+  // The same, but a choice at random does not change the throughput: its weight is left in
+  // `weight`.
   std::optional<Hit> metAt(PathState& state, const Hit& hit, float& weight,
                            PathContext& context) const;
 
@@ -105,8 +106,8 @@ class PathTracer {
   std::optional<Hit> skipHiddenBacks(PathState& state, std::optional<Hit> hit,
                                      PathContext& context) const;
 
-  // Adds what a ray that hits nothing finds; not for narrow lobes and the camera. `escaped`: of the
-  // probe.
+  // Adds the light that a ray finds if it hits nothing; not for narrow lobes and the camera.
+  // `escaped`: the probe's radiance and pdf.
   void addEscaped(PathState& state, const LightSource::Escaped& escaped,
                   PathContext& context) const;
 
@@ -117,7 +118,7 @@ class PathTracer {
   float mirrorAlpha() const { return mirrorAlpha_; }
 
  private:
-  // `weight`: of the path that goes on, if that is chosen at random.
+  // `weight`: output, the weight of the path that continues, if that is chosen at random.
   std::optional<Hit> metAt(PathState& state, const Hit& hit, const Surface& surface, float& weight,
                            PathContext& context) const;
   bool sharesPlace(const Hit& hit) const {
@@ -135,7 +136,7 @@ class PathTracer {
   template <bool kLayered>
   bool scatterAs(PathState& state, const Surface& surface, const Bsdf& bsdf,
                  PathContext& context) const;
-  // Removes the lobes whose limit of depth the path has reached. Returns false if all are.
+  // Removes the lobes whose depth limit the path has reached. Returns false if all are.
   bool limitKinds(const PathState& state, Bsdf& bsdf) const;
   // The guide of the bounces from here; null: none.
   const CausticGuide* guideOf(const PathState& state) const;

@@ -28,7 +28,7 @@ struct PathSettings {
   int maxDiffuseDepth = INT_MAX, maxSpecularDepth = INT_MAX;
   bool hideProbe = false;        // from the camera
   bool estimateDepthCut = true;  // estimate the light beyond the depth limits
-  // For strategies that can be guided (LightSource::canBeGuided()); null: none.
+  // A guide for strategies that can be guided (LightSource::canBeGuided()); null: none.
   const LightGuide* guide = nullptr;
   const CausticGuide* caustics = nullptr;  // likewise, for bounces
   RayMask visible = kAllInstances;         // all rays of the paths ignore other instances

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer: which of the surfaces at one place a path meets.
+// PathTracer: the surfaces that a path meets where several coincide.
 #include "transport/place.h"
 
 #include <algorithm>
@@ -29,14 +29,15 @@ class PlaceCollector {
     ++count_;
     if (material.transmits())
       return addLayer({hit, !material.isBody() ? kSheet : front ? kEntered : kLeft});
-    // Of several opaque surfaces the path meets a front, and of fronts one that emits.
+    // Among several opaque surfaces the path meets a front face, and among front faces one that
+    // emits.
     const int rank = !front ? 2 : material.emits() ? 0 : 1;
     keepFirst(passesFromBehind(state_, material, front) ? oneWay_ : opaque_, {hit, rank});
   }
 
   int count() const { return count_; }
 
-  // Fronts that pass light from behind, as one; none where an opaque surface blocks that light.
+  // The fronts that pass light from behind, as one; none where an opaque surface blocks that light.
   std::optional<Hit> oneWay() const {
     return oneWay_ && !opaque_ ? std::optional(oneWay_->hit) : std::nullopt;
   }
@@ -68,7 +69,7 @@ class PlaceCollector {
  private:
   struct Layer {
     Hit hit;
-    int rank;  // before those with higher ones
+    int rank;  // crossed before surfaces of higher rank
   };
   static constexpr int kEntered = 0, kSheet = 1, kLeft = 2;  // ranks of surfaces that transmit
 

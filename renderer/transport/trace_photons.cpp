@@ -88,7 +88,7 @@ class Random {
   uint64_t key_, index_ = 0;
 };
 
-// What a task has found, with how many rays.
+// The photons that a task has found, and its number of rays.
 struct Traced {
   std::vector<Photon> photons;
   size_t rays = 0;
@@ -118,7 +118,7 @@ class PhotonTracer {
            out);
   }
 
-  // From a point on an emissive triangle, in a cosine-distributed direction.
+  // Traces a path from a point on an emissive triangle, in a cosine-distributed direction.
   void traceFromLamp(Random random, Traced& out) const {
     const Emitters::Point lamp =
         world_.sources.emitters->choose(double(random.bits()) * 0x1p-32, random.get1());
@@ -174,7 +174,7 @@ class PhotonTracer {
     vec3 emission;
     uint64_t chain;
   };
-  // Until the path leaves the scene or a bounce is not narrow. `target`: null for lamps.
+  // Follows the path until it leaves the scene or a bounce is not narrow. `target`: null for lamps.
   void follow(const Start& start, const Target* target, Random& random, Traced& out) const {
     auto [ray, flux, emission, chain] = start;
     Media media;
@@ -247,7 +247,7 @@ std::vector<Photon> tracePhotons(const World& world, const LightSource& lighting
       rays += some.rays;
     }
     if (photons.empty()) break;
-    // Twice as many as so far, within the budget.
+    // Traces twice as many paths as so far, within the budget.
     const double affordable = double(end) * std::max(budget.rays / double(rays) - 1, 0.0);
     begin = end;
     end = std::min({tasks, 3 * end, end + size_t(std::min(affordable, 1e9))});

@@ -22,7 +22,7 @@ struct World {
   explicit World(const Scene& described, const std::vector<RayMask>& masks = {})
       : World(described, masks, BsdfTables(described.materials)) {}
   // Copies the BSDF tables of another world, which must include those that the materials need.
-  // `earlier`: as Accel.
+  // `earlier`: as for Accel.
   World(const Scene& described, const std::vector<RayMask>& masks, const BsdfTables& tables,
         std::shared_ptr<BuiltGeometry> earlier = nullptr)
       : scene(described),
@@ -35,7 +35,7 @@ struct World {
   const Accel accel;
   const SceneSources sources;
   const SharedPlaces sharedPlaces;
-  const BsdfTables bsdfTables;  // those that its materials need
+  const BsdfTables bsdfTables;  // the tables that its materials need
 };
 
 }  // namespace chromeball

@@ -21,7 +21,7 @@ constexpr int kMaxPixels = 1024;  // of images that are made
 constexpr uint32_t kMaxSamples = 16;
 constexpr size_t kMaxBlocks = 16;
 
-// What a checkpoint is restored for: a quad under a gradient, with guides.
+// The scene for which a checkpoint is restored: a quad under a gradient, with guides.
 struct SmallWorld {
   static Scene quad() {
     Scene scene;
@@ -90,7 +90,7 @@ void readAll(const std::string& path) {
   if (!plan.composite) readOrReject([&] { resume(path, plan.settings); });
 }
 
-// Nothing if the bytes are no such contents.
+// Returns nothing if the bytes are no such contents.
 std::string fileOf(std::span<const uint8_t> contents) {
   const auto number = [&]() -> size_t {
     if (contents.size() < 2) return 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What snapshots cost: samples per second of a session from which one is taken every 50 ms, over
-// those of one that is left alone. Both render in turn, for a second each time.
+// The cost of snapshots: samples per second of a session whose snapshot is taken every 50 ms, over
+// the samples per second of an undisturbed one. Both render in turn, for a second each time.
 #include <benchmark/benchmark.h>
 
 #include <chrono>

@@ -11,7 +11,7 @@ find_package(OpenEXR CONFIG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(PkgConfig REQUIRED)
-# For the module that reads TIFF alone. Debian's CMake package of OpenImageIO also requires its
+# Used only by the module that reads TIFF. Debian's CMake package of OpenImageIO also requires its
 # programs and Python module; the file for pkg-config requires the library alone.
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
 pkg_check_modules(WebP REQUIRED IMPORTED_TARGET libwebp)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DSOURCE=renderer -DDESTINATION=include/chromeball -P public_headers.cmake
-# Copies the public headers: those of renderer/api/, as <chromeball/session.h>, and what they include,
+# Copies the public headers: all of renderer/api/, as <chromeball/session.h>, and what they include,
 # with #include "math/vec.h" turned into #include <chromeball/math/vec.h>. None may include a library
 # that only the renderer's own sources use, or have vector types, which need the renderer's
 # instruction set.

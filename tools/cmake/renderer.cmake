@@ -2,7 +2,7 @@
 # The library: chromeball_renderer here, chromeball::renderer for others.
 file(GLOB_RECURSE renderer_sources CONFIGURE_DEPENDS renderer/*.cpp)
 list(FILTER renderer_sources EXCLUDE REGEX "/image/imageio/")  # the module
-# Rooms of which a render's time has no part: what is read, planned and reported.
+# Folders that take no part of a render's time: what is read, planned and reported.
 set(planning_sources ${renderer_sources})
 list(FILTER planning_sources INCLUDE REGEX "/renderer/(description|front|session|parts|animation|study|measure|scene/gltf|scene/solve)/")
 list(REMOVE_ITEM renderer_sources ${planning_sources})
@@ -35,7 +35,7 @@ set_property(SOURCE renderer/image/io/imageio_module.cpp PROPERTY COMPILE_DEFINI
 
 set(chromeball_private_libraries
   # tinygltf before Draco: Debian's libdraco exports a tinygltf of another version, whose functions
-  # would take the place of those that our calls were compiled for.
+  # would replace the ones that our calls were compiled for.
   TBB::tbb embree OpenEXR::OpenEXR PNG::PNG JPEG::JPEG PkgConfig::WebP
   TinyGLTF::TinyGLTF PkgConfig::Draco meshoptimizer::meshoptimizer PkgConfig::Blosc
   # Headers only: a static library's consumers need not find them.

@@ -62,7 +62,7 @@ BallReflectance parseReflectance(const AssembleArguments& arguments) {
   return BallReflectance::ofMetal(normal.value_or(dvec3(atCentre)), metal);
 }
 
-// Within [least, most], or `fallback` for no text.
+// A number within [least, most], or `fallback` for no text.
 double parseRange(const std::string& text, double fallback, double least, double most,
                   std::string_view option, std::string_view meaning) {
   if (text.empty()) return fallback;

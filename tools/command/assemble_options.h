@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// As given.
+// The arguments as given.
 struct AssembleArguments {
   std::vector<std::string> photographs, azimuths, circles, masks;
   std::string out, from = "mirror-ball", to = "lat-long", size, fill = "inpaint", preview;

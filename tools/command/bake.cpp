@@ -22,7 +22,7 @@
 namespace chromeball {
 namespace {
 
-// The options of the ambient occlusion that is baked are not those of a render.
+// Baked ambient occlusion has options of its own, not a render's.
 RenderDescription plannedJob(const BakeOptions& a) {
   SceneFile scene = openScene(a.scene);
   if (scene.composite)
@@ -160,7 +160,7 @@ class Bake {
     throwInput("{}: has no triangle with an area; there is nothing to bake", options_.scene);
   }
 
-  // Pages as floats and bytes, and what is kept of each texel's point.
+  // Pages as floats and bytes, and the data kept for each texel's point.
   void checkPageMemory(int size) const {
     constexpr double kBytesPerTexel = 7 * sizeof(float) + 20 + sizeof(BakePoint) +
                                       sizeof(PointResult) + 2 * sizeof(Rgb) + sizeof(int);

@@ -8,8 +8,8 @@
 
 namespace chromeball {
 
-// Without the scene's probe, which relighting replaces. `command`: of pixels or vertices. Throws
-// InputError for composites and surroundings, which have none.
+// The job without the scene's probe, which relighting replaces. `command`: for pixels or vertices.
+// Throws InputError for composites and surroundings, which cannot be relit.
 RenderDescription basisJob(const SceneOptions& options, SceneCommand command);
 
 LoadedScene loadBasisScene(const RenderDescription& job);

@@ -22,8 +22,8 @@ namespace {
 
 int ceilDivide(int a, int b) { return (a + b - 1) / b; }
 
-// The rows of a band: all that there are, if they fit into the memory; else those of whole tiles,
-// in bands that are about as high as each other.
+// The rows of a band: all rows if they fit into the memory; else whole tiles, in bands of about
+// equal height.
 int rowsOfBand(const LoadedScene& loaded, const DirectionBasis& basis) {
   const RenderDescription& job = loaded.description;
   constexpr int kTile = TileGrid::kSize;

@@ -97,7 +97,7 @@ class BasisVertices {
             loaded_.description.settings.maxDepth};
   }
 
-  // The values, their columns, the bytes of the file's buffer and those of the file.
+  // Counts the values, their columns, the file's buffer and the file's bytes.
   void checkMemory(size_t points) const {
     const double values = double(points) * double(basis_.size() + 1) * sizeof(Rgb);
     const double needed = 4 * values + estimateMemory(loaded_).peak;
@@ -113,7 +113,8 @@ class BasisVertices {
                  basis_.name(), points, basis_.size());
   }
 
-  // The values, the signals, and those of a cluster in double; and the products of its analysis.
+  // Counts the values, the signals, a cluster's signals in double precision, and the products of
+  // its analysis.
   void checkGlossyMemory(size_t points) const {
     const double count = ViewGrid::kCount * double(basis_.size() + 1);
     const double product = std::min(double(points), 3 * count);

@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// From construction to destruction, which clears the line; only on a terminal.
+// A line that is shown from construction to destruction, which clears it; only on a terminal.
 class BusyLine {
  public:
   explicit BusyLine(std::string title);  // of the work: "lights"

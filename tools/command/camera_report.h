@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chromeball camera solve` prints.
+// The output of `chromeball camera solve`.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ struct CameraReport {
 // "points      12, RMS 0.43 pixels, worst `lamp` 0.91 pixels", and so on.
 std::vector<std::string> reportLines(const CameraReport& report);
 
-// With two spaces of indentation.
+// The report as JSON, indented by two spaces.
 std::string reportJson(const CameraReport& report);
 
 }  // namespace chromeball

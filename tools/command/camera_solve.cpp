@@ -89,7 +89,7 @@ CameraKnowledge knowledgeOf(const CameraSolveArguments& a, const ImageSize& size
   return known;
 }
 
-// A photograph of too few points for a field of view may tell it itself.
+// If a photograph has too few points to find the field of view, the file itself may state it.
 void addExif(const std::string& plate, size_t points, CameraKnowledge& known) {
   if (known.focalLength || points >= fewestPoints(known)) return;
   const auto focal35 = readExif(plate).focalLength35;

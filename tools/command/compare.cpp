@@ -40,7 +40,7 @@ struct CompareArguments {
   std::optional<int> referenceSamples;
 };
 
-// Each strategy with each integrator, but those that name one.
+// Combines each strategy with each integrator, except rows that name one.
 std::vector<std::string> resolveRows(const std::vector<std::string>& strategies,
                                      const std::vector<std::string>& integrators) {
   std::vector<std::string> names;
@@ -94,8 +94,8 @@ std::vector<Budget> planBudgets(const CompareArguments& a) {
   return budgets;
 }
 
-// 16 times the largest budget, so that the reference's variance is small compared with that of each
-// strategy unless the reference's own strategy is less than half as efficient. The number of
+// 16 times the largest budget, so that the reference's variance is small compared with each
+// strategy's unless the reference's own strategy is less than half as efficient. The number of
 // samples in a budget of seconds is unknown.
 int planReferenceSamples(const CompareArguments& a, const std::vector<Budget>& budgets) {
   constexpr int kFactor = 16, kMin = 1024;

@@ -18,9 +18,9 @@ constexpr std::string_view kKeysOfBake[] = {"render.size",         "camera.file"
 constexpr std::string_view kKeysOfBasis[] = {"lighting.lights", "lighting.from"};
 constexpr std::string_view kKeysOfBasisVertices[] = {"render.size", "camera.file",
                                                      "lighting.lights", "lighting.from"};
-// Those whose option means something else than the key.
+// Keys whose option means something else than the key.
 constexpr std::string_view kOptionsOfBake[] = {"render.ao_distance"};
-// What a comparison is about: its own options say it.
+// The subjects of a comparison, which its own options set.
 constexpr std::string_view kVariedByCompare[] = {"lighting.strategy", "render.samples",
                                                  "render.time", "render.noise"};
 
@@ -46,7 +46,7 @@ bool heeds(SceneCommand command, const Setting& setting) {
   return isOptionOf(command, setting) || isIn(keysOf(command), setting);
 }
 
-// Whether an image of `render` would be another one without it.
+// Whether an image of `render` would differ without the setting.
 bool changesImages(const Setting& setting, const SettingValue& value) {
   if (setting.effect != Effect::Image && setting.effect != Effect::Limit) return false;
   const std::string text = toText(value);

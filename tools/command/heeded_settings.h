@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command takes from a scene file.
+// The settings that a command takes from a scene file.
 #pragma once
 
 #include "front/scene_file.h"
@@ -7,8 +7,8 @@
 
 namespace chromeball {
 
-// Removes the settings of the file that have no effect on what the command makes, so that they have
-// none by accident either, and adds a warning that names those that would change an image.
+// Removes the settings of the file that have no effect on the command's output, so that they have
+// none by accident either, and adds a warning that names the ones that would change an image.
 void dropUnheeded(SceneFile& scene, SceneCommand command);
 
 }  // namespace chromeball

@@ -23,7 +23,7 @@ struct ImageDenoiseArguments {
   bool quiet = false;
 };
 
-// No number of a render is as large.
+// No number in a render is as large.
 constexpr float kMaxRadiance = 1e15f, kMaxUnit = 1e6f;
 
 struct Reader {
@@ -47,7 +47,7 @@ struct Reader {
         throwInput("{}: {} has infinite, NaN or huge texels", path, name);
     return image;
   }
-  // Of the noisy image; that of a denoised file is a layer.
+  // The colour of the noisy image; in a denoised file it is a layer.
   Image color() const {
     if (std::ranges::count(layerNames(file), "noisy") > 0) return layer("noisy", 3);
     for (const char* channel : {"R", "G", "B"})

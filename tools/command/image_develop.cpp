@@ -30,7 +30,7 @@ struct OpticsOption {
 
 struct ImageDevelopArguments {
   std::string in, out, tone = "none";
-  // In the order in which they are applied; the last also takes a file.
+  // The steps in the order in which they are applied; the last also takes a file.
   std::vector<OpticsOption> optics = {{"clip"},  {"depth-blur"}, {"motion"},
                                       {"bloom"}, {"glare"},      {"vignette"}};
   float exposure = 0;
@@ -105,7 +105,7 @@ Image depthOf(const ImageFile& file, const std::string& path) {
   return *std::move(depth);
 }
 
-// "bloom=.75:1,.25:32 vignette=.4", after what was done to the image before.
+// "bloom=.75:1,.25:32 vignette=.4", after the steps applied to the image before.
 std::string historyOf(const ImageDevelopArguments& arguments, const Metadata& metadata) {
   std::string history;
   if (const auto earlier = metadata.find("developed"); earlier != metadata.end())
@@ -115,7 +115,7 @@ std::string historyOf(const ImageDevelopArguments& arguments, const Metadata& me
   return history + (arguments.exact ? " exact" : "");
 }
 
-// What is needed of a file, whose other layers are not kept in memory.
+// The layers needed from a file; others are not kept in memory.
 struct Input {
   OutputImage image;  // the color alone
   std::vector<std::string> otherLayers;

@@ -27,7 +27,7 @@ constexpr std::string_view kPrefix = "light.";
 struct ImageRelightArguments {
   std::string in, out, gains, tone = "none";
   float exposure = 0;
-  // With a probe:
+  // These are for relighting with a probe:
   std::string probe, mapping = "auto", scale = "1", added;
   Rotation rotation;
   bool bent = false, leavesSunsOut = false;
@@ -84,7 +84,7 @@ Groups readGroups(const ImageFile& file, const std::string& path) {
   return groups;
 }
 
-// In the order of the groups; 1 for those that are not named.
+// The gains in the order of the groups; 1 for groups that are not named.
 std::vector<Rgb> gainsOf(const Groups& groups, const std::map<std::string, Rgb>& given) {
   std::vector<Rgb> gains(groups.names.size(), Rgb(1));
   for (const auto& [name, gain] : given) {
@@ -97,7 +97,7 @@ std::vector<Rgb> gainsOf(const Groups& groups, const std::map<std::string, Rgb>&
   return gains;
 }
 
-// Alpha is that of the file: light does not change it.
+// Takes the file's alpha: light does not change it.
 Layer withAlphaOf(const ImageFile& file, const Image& color) {
   const std::optional<Image> before = findColorAndAlpha(file);
   if (!before || before->channels < 4) return {"", "RGB", color};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders one image, with a progress bar, and with what is written and shown meanwhile.
+// Renders one image, with a progress bar, and writes and shows it meanwhile.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@
 
 namespace chromeball {
 
-// Says after each pass what there is so far.
+// Reports the image so far after each pass.
 class PassReport {
  public:
   std::string of(const RenderResult& result);
@@ -28,7 +28,7 @@ class ImageRender {
   ImageRender(const LoadedScene& loaded, bool showsProgress, std::vector<Viewer*> viewers);
 
   // The image, ready to be written except for its state. Ends early if `stop` is set.
-  // `fractionOfAll`: of all work, by that of this image.
+  // `fractionOfAll`: maps the fraction done of this image to the fraction of all work.
   JobResult run(const PreparedScene& prepared, const std::function<double(double)>& fractionOfAll,
                 const std::atomic<bool>& stop);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the images of a command, and prints what their readers have to say: which channels were
-// chosen, which fields of the header were applied, that colours were converted.
+// Reads the images of a command, and prints their readers' messages: channels chosen, fields of the
+// header applied, colours converted.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// As readImageFile(), readImage() and loadProbe().
+// The same as readImageFile(), readImage() and loadProbe().
 ImageFile openImageFile(const std::filesystem::path& path,
                         IntegerTexels integers = IntegerTexels::Srgb);
 Image openImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that commands about lights share: how many faces an icosphere has, and what part of the
-// probe gives no light.
+// Options that commands about lights share: the number of faces of an icosphere, and the part of
+// the probe that gives no light.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ struct LightsProbe {
 
   // Throws InputError.
   void checkMask() const;
-  // As a lat-long map; prints warnings, also if the mask leaves no light. Throws InputError.
+  // The probe as a lat-long map; prints warnings, also if the mask leaves no light. Throws
+  // InputError.
   Image load() const { return loadWithFile().latLong; }
   // The same, with the properties of the file.
   LoadedProbe loadWithFile() const;

@@ -62,7 +62,7 @@ void checkOptions(const LightingMethod& method, const LightRequest& request) {
                method.name);
 }
 
-// Also of options that say nothing without another.
+// Also checks options that have no meaning without another.
 void checkPictures(const LightingMethod& method, const LightsArguments& arguments) {
   if (arguments.regions && arguments.preview.empty())
     throwInput("--regions: are drawn in the image of --preview, which is missing");
@@ -81,7 +81,8 @@ void warnOfUnits(const LightsArguments& arguments, LightFormat format) {
                      format == LightFormat::OpenGl ? "radiance" : "irradiance in W/m^2"));
 }
 
-// Of what is asked for, or was found, and is not in the file where other programs look for it.
+// Warns of light that was asked for or found, but is not in the file where other programs look for
+// it.
 void warnOfLosses(const LightsArguments& arguments, const MadeLights& made, LightFormat format) {
   const bool isGltf = format == LightFormat::Gltf;
   constexpr const char* kUnread = "is only in `extras`, which other programs do not read";
@@ -101,7 +102,7 @@ void warnOfLosses(const LightsArguments& arguments, const MadeLights& made, Ligh
 
 std::string rgbText(const dvec3& c) { return fmt::format("{:.4g} {:.4g} {:.4g}", c.x, c.y, c.z); }
 
-// Writes the picture, and says what it shows.
+// Writes the picture, and prints what it shows.
 void writeSphere(const std::string& file, const Image& latLong, const MadeLights& made,
                  int subdivisions) {
   const std::vector<vec3> normals = icosphereNormals(subdivisions);
@@ -130,7 +131,7 @@ LightUnits unitsOf(const LightsArguments& arguments) {
                                  : parseLightUnits({arguments.units, "--light-units"});
 }
 
-// Polygons in place of a method.
+// Makes polygons instead of lights by a method.
 void runPolygonsOf(const LightsArguments& arguments) {
   if (!arguments.method.empty())
     throwInput("--method: excludes --suggest and --polygons; give one");

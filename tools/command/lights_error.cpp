@@ -32,7 +32,7 @@ struct LightsErrorArguments {
 
 struct Row {
   std::string method;
-  int count;  // as requested; of levels, the maximum
+  int count;  // as requested; for levels, the maximum
   size_t lights;
   LightError error;
   double seconds;  // to make the lights

@@ -13,11 +13,11 @@ namespace chromeball {
 struct PolygonRequest {
   LightsProbe probe;
   std::string output, preview;  // preview: perhaps empty
-  std::optional<int> suggest;   // so many polygons; else those of the file
+  std::optional<int> suggest;   // number of polygons; none: the file's
   std::string polygons;
   LightFormat format = LightFormat::Json;  // of their lights
   LightUnits units = LightUnits::Photometric;
-  Rotation rotation;  // of these lights
+  Rotation rotation;  // of the lights
 };
 
 // Writes the suggested polygons, which [[source]] reads; or a directional light for each polygon of

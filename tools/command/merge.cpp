@@ -26,8 +26,8 @@ struct MergeArguments {
   bool quiet = false;
 };
 
-// The attributes that hold for the whole image: those of the first part, and the names of the
-// numbers in the layers of all parts.
+// The attributes that hold for the whole image: the first part's, and the names of the numbers in
+// the layers of all parts.
 Metadata wholeMetadata(const PartSet& parts) {
   Metadata metadata = readExrMetadata(parts.paths().front());
   for (const char* name :

@@ -13,7 +13,7 @@ struct Equivalents {
   std::string_view names;  // of other renderers, each between spaces
 };
 
-// From Blender, Cycles, Mitsuba, pbrt, LuxCore, Arnold, appleseed and image tools.
+// Options of Blender, Cycles, Mitsuba, pbrt, LuxCore, Arnold, appleseed and image tools.
 constexpr auto kEquivalents = std::to_array<Equivalents>({
     {"--samples N",
      " spp s sample-count num-samples nsamples samples-per-pixel pixel-samples pixelsamples "

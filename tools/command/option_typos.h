@@ -6,7 +6,7 @@
 
 namespace chromeball {
 
-// Our option for that of another renderer: "--samples N" for "--spp" or "-s". Empty if unknown.
+// Our equivalent of another renderer's option: "--samples N" for "--spp" or "-s". Empty if unknown.
 std::string_view equivalentOption(std::string_view option);
 
 }  // namespace chromeball

@@ -83,7 +83,7 @@ void print(const Report& report) {
 
 constexpr double kLargestDoubt = 0.1;  // of a circle, in pixels
 
-// Luminance below the horizon over that above it.
+// Luminance below the horizon / luminance above it.
 double brightnessBelow(const Image& latLong) {
   double above = 0, below = 0;
   for (int y = 0; y < latLong.height; ++y)

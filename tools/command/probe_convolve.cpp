@@ -69,7 +69,7 @@ Image convolvedMap(const ProbeConvolveArguments& arguments, const Image& latLong
                                                    : shConvolve(latLong, kernel, directions));
 }
 
-// Each texel the mean over its solid angle.
+// Each texel is the mean over its solid angle.
 Image reduced(const ProbeConvolveArguments& arguments, const Image& latLong) {
   const ImageSize size = parseSize(arguments.fromSize, "--from-size");
   if (size.width > latLong.width || size.height > latLong.height)

@@ -35,7 +35,7 @@ struct Region {
   Rgb gain;
 };
 
-// What to do, in the order in which it is done.
+// The edits, in the order in which they are applied.
 struct Edits {
   Rotation rotation;
   double nadirRadius = 0;  // degrees; 0: nothing
@@ -105,7 +105,7 @@ Edits parse(const ProbeEditArguments& arguments) {
   return edits;
 }
 
-// The largest float where the level is beyond it: then nothing is clipped.
+// The largest float if the level is above it: then nothing is clipped.
 float clipLevel(const Edits& edits, const Image& latLong) {
   if (edits.clip) return float(*edits.clip);
   const double mean = luminance(meanRadiance(latLong)), level = mean * std::exp2(*edits.clipStops);

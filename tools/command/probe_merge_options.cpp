@@ -57,7 +57,7 @@ PhotographSeries::Filter parseFilter(const std::string& text, size_t photographs
   return {size_t(k) - 1, {c[0], c[1], c[2]}};
 }
 
-// "F.exr" or "4=F.exr"; a name may contain `=` after what is no number.
+// "F.exr" or "4=F.exr"; a name may contain `=` if no number is before it.
 PhotographSeries::FlatField parseFlatField(const std::string& text) {
   const size_t at = text.find('=');
   if (at == std::string::npos || text.substr(0, at).find_first_not_of("0123456789.") < at)

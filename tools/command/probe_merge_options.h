@@ -15,7 +15,7 @@ struct MergeArguments {
 
   void addTo(Command command);
 
-  // What they ask for, without looking at files. Throws InputError.
+  // Converts the options, without looking at files. Throws InputError.
   PhotographSeries series() const;
 };
 

@@ -92,7 +92,7 @@ BallSamples readBall(const ProbeSunArguments& arguments, const DiffuseBall& ball
   return samples;
 }
 
-// Where the sun is, and the width of its plateau if that shows it.
+// The direction of the sun, and the width of its plateau if the probe shows one.
 struct Direction {
   dvec3 direction;
   std::optional<double> width;

@@ -14,7 +14,7 @@
 namespace chromeball {
 namespace {
 
-// Options that are given, or other than by default.
+// Options that are given, or differ from their default.
 using GivenOptions = std::vector<std::pair<bool, const char*>>;
 
 void refuseGiven(const GivenOptions& options, const char* why) {

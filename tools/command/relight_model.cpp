@@ -16,7 +16,7 @@
 namespace chromeball {
 namespace {
 
-// Of `count` coefficients.
+// The number of coefficients to keep, out of `count`.
 size_t parseKeep(std::string text, size_t count) {
   const bool isPercent = text.back() == '%';
   if (isPercent) text.pop_back();

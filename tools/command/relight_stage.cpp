@@ -29,7 +29,7 @@ double parseShare(std::string text, const char* option) {
   return percent / 100;
 }
 
-// What is left for a stage beside the program, in bytes.
+// The memory left for a stage beside the program, in bytes.
 double memoryOf(const RelightOptions& a) {
   if (a.memory && !(*a.memory > 0 && std::isfinite(*a.memory)))
     throw InputError("--memory: must be a positive number of GB");
@@ -59,7 +59,7 @@ StageBands openStage(const RelightOptions& a) {
   return {std::move(file), memoryOf(a) - rest, a.stage};
 }
 
-// At once, as --preview needs it.
+// Reads the stage all at once, as --preview needs it.
 LightStage readStage(const RelightOptions& a) {
   if (a.isOfPhotographs()) return readPhotographsOf(a);
   StageReader file(a.stage);

@@ -11,11 +11,11 @@
 
 namespace chromeball {
 
-// As on the command line.
+// The options as on the command line.
 struct RelightOptions {
   std::string stage;               // or:
   std::string images, directions;  // photographs
-  std::string irradiance = "1";    // of these
+  std::string irradiance = "1";    // of the photographs
   std::vector<std::string> probes;
   std::string mapping = "auto", scale = "1";
   Rotation rotation;
@@ -37,7 +37,7 @@ struct RelightOptions {
   const std::string& source() const { return isOfPhotographs() ? images : stage; }
 };
 
-// Throw InputError.
+// These throw InputError.
 void runRelitPicture(const RelightOptions& a);
 void runReflectanceFunction(const RelightOptions& a);
 void runRelightPreview(const RelightOptions& a);

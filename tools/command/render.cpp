@@ -78,14 +78,14 @@ void writeImages(const RenderDescription& job, const LoadedScene& loaded, const 
     writeText(*stats, jsonText(statistics(loaded, result, seconds), 2) + "\n");
 }
 
-// Of a part of a render, of the files that were loaded; empty for a whole one.
+// The identity of a part of a render, from the files that were loaded; empty for a whole render.
 std::optional<RenderPart> identified(const LoadedScene& loaded) {
   if (!loaded.description.settings.isPart()) return {};
   return RenderPart{renderIdentity(loaded), {}};
 }
 
-// Adds the state of a part to its image. After the render, which solves the reflectance of a local
-// scene.
+// Adds the state of a part to its image. To be called after the render, which solves the
+// reflectance of a local scene.
 void addState(const LoadedScene& loaded, std::optional<RenderPart>& part, JobResult& result) {
   if (!part) return;
   part->plan = finishPlan(loaded, result.render);
@@ -135,8 +135,8 @@ bool isFinished(const SequenceFrame& frame) {
   return std::ranges::all_of(files, exists) && (!stats || exists(*stats));
 }
 
-// The probes of all frames that are to be rendered: a render of hours does not end at the first
-// that is missing.
+// The probes of all frames that are to be rendered: so a render of hours does not end at the first
+// missing one.
 void checkProbes(const Sequence& sequence, bool overwrites) {
   std::vector<std::string> missing;
   std::string location;

@@ -11,7 +11,7 @@ namespace chromeball {
 Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,
                         const JobResult& result);
 
-// Those about excluded samples and clamped light alone.
+// Only the messages about excluded samples and clamped light.
 void addExcluded(const RenderResult& result, Messages& messages);
 
 }  // namespace chromeball

@@ -51,14 +51,14 @@ std::string titleOf(const Setting& setting) {
   throw std::logic_error("a setting has no section");
 }
 
-// Those that decide the light on surfaces, and none that need an image.
+// Options that decide the light on surfaces, and none that need an image.
 constexpr std::string_view kOfBake[] = {
     "probe",          "probe-mapping",  "probe-rotation", "probe-scale", "samples",   "seed",
     "max-depth",      "ao-distance",    "strategy",       "light-from",  "sun-angle", "light-units",
     "animation",      "animation-time", "variant",        "camera",      "memory",    "threads",
     "texture-memory", "allow-external", "progress",       "quiet"};
 
-// Those that decide the picture, and none about its light, which comes from everywhere.
+// Options that decide the picture, and none about its light, which comes from everywhere.
 constexpr std::string_view kOfBasis[] = {"size",
                                          "samples",
                                          "seed",
@@ -83,7 +83,7 @@ constexpr std::string_view kOfBasis[] = {"size",
                                          "progress",
                                          "quiet"};
 
-// Of these, those that vertices do not need.
+// The options among these that vertices do not need.
 constexpr std::string_view kOfPixels[] = {
     "size", "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
     "mis",  "transparent",       "camera-file"};

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxSurfaces = 64;  // that one ray passes
 
-// The first surface along the ray that `stops`, with the hits of those before it passed.
+// The first surface along the ray that `stops`, passing the surfaces before it.
 template <class Stops>
 std::optional<Surface> firstSurface(const Accel& accel, Ray ray, const Stops& stops) {
   const Scene& scene = accel.scene();
@@ -32,7 +32,7 @@ std::optional<Surface> firstSurface(const Accel& accel, Ray ray, const Stops& st
   return std::nullopt;
 }
 
-// What the camera sees through the pixels of a grid.
+// The surfaces that the camera sees through the pixels of a grid.
 struct Seen {
   std::vector<Surface> black;  // visible surfaces in pixels that are black
   int surfaces = 0;            // pixels with a visible surface
@@ -66,7 +66,7 @@ Seen lookThrough(const LoadedScene& loaded, const Accel& accel, const Image& mea
 
 struct Target {
   vec3 direction;                     // unit, or
-  std::optional<vec3> position = {};  // that of a lamp
+  std::optional<vec3> position = {};  // a lamp's
 };
 
 // Directions in proportion to the probe's light.
@@ -120,7 +120,8 @@ bool isBehindWalls(const Accel& accel, const Surface& surface, const std::vector
   });
 }
 
-// Why no camera sees any surface; empty if one may. The search ends at the first that shows.
+// The reason why the camera sees no surface; empty if it may see one. The search ends at the first
+// visible surface.
 std::string whyNoneShows(const Scene& scene) {
   constexpr std::array<vec2, 7> kPoints = {vec2(1.f / 3),     vec2(0.05f, 0.05f), vec2(0.9f, 0.05f),
                                            vec2(0.05f, 0.9f), vec2(0.45f, 0.45f), vec2(0.1f, 0.45f),

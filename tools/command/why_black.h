@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a rendered image shows nothing.
+// Explains why a rendered image shows nothing.
 #pragma once
 
 #include <optional>

@@ -15,7 +15,7 @@
 namespace chromeball {
 namespace {
 
-// A .pfm or .png is read again with the mapping that its shape and its corners suggest.
+// A .pfm or .png is read back with the mapping that its shape and its corners suggest.
 void warnOfLostMapping(const std::string& file, const Image& map, Mapping mapping) {
   const DetectedMapping detected = detectMapping(map);
   if (detected.mapping == mapping) return;

@@ -9,16 +9,16 @@
 
 namespace chromeball {
 
-// The size of a map to make for `file`, of which there will be `copies` in memory, as it is made
-// and as it is written. Throws InputError if that is more than the process may use.
+// Returns the size of a map to make for `file`. Throws InputError if `copies` of it, including
+// those for writing, take more memory than the process may use.
 ImageSize checkedSize(const std::string& file, const ImageSize& size, double copies = 3);
 
 // Copies of a map of irradiance: the direction and the horizon of each texel are kept.
 inline constexpr double kIrradianceCopies = 8;
 
-// As writeImage(); an .exr or .hdr has the name of its mapping, which loadProbe() reads. Warns of a
-// mapping that other files lose, of the channels above 1 that a .png clips, and of those below 0
-// that become 0 in a .png and an .hdr.
+// The same as writeImage(); an .exr or .hdr stores the name of its mapping, which loadProbe()
+// reads. Warns of a mapping that other files lose, of channels above 1 that a .png clips, and of
+// channels below 0 that become 0 in a .png and an .hdr.
 void writeProbe(const std::string& file, const Image& map, Mapping mapping = Mapping::LatLong);
 
 }  // namespace chromeball

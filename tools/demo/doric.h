@@ -6,7 +6,7 @@
 
 namespace chromeball::demo {
 
-// From the stylobate to the architrave: a fluted shaft, an echinus and a square abacus.
+// A column from the stylobate to the architrave: a fluted shaft, an echinus and a square abacus.
 struct DoricColumn {
   double height = 10.4, shaft = 9.54;             // of the whole, and of its shaft
   double lowerRadius = 0.95, upperRadius = 0.74;  // to the arrises between the flutes
@@ -18,7 +18,7 @@ struct DoricColumn {
 // Radius to the arrises at a height of the shaft: linear taper, and a parabola for the entasis.
 double radiusAt(const DoricColumn& column, double height);
 
-// Standing on the origin. Flutes are arcs of circles of a depth of 7% of the radius.
+// The column stands on the origin. Flutes are arcs of circles of a depth of 7% of the radius.
 Surface shaft(const DoricColumn& column);
 Surface capital(const DoricColumn& column);
 

@@ -31,7 +31,7 @@ void addSide(Surface& s, float side) {
          {kNave.windowHalfWidth, kNave.windowSill, kNave.windowSpring});
     wall(side * kNave.aisle, 0, kAisleWall, {0.75f, 2.2f, 4.3f});
   }
-  // What rests on the capitals, and the aisle's roof.
+  // The surfaces that rest on the capitals, and the aisle's roof.
   for (int i = 0; i <= kNave.bays; ++i) {
     const float z = -length + kNave.bay * float(i);
     const float low = std::max(z - 0.55f, -length), high = std::min(z + 0.55f, length);

@@ -14,7 +14,7 @@ enum class Nave {
   Things,  // the monoliths and spheres on the room's floor, for the light of that probe
 };
 
-// A .glb with a camera named View. Throws RunError.
+// Writes a .glb with a camera named View. Throws RunError.
 void writeNave(const std::string& path, Nave what);
 
 // The room's measures, in metres: it lies along z, the apse is at negative z, the floor at y = 0.

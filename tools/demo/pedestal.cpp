@@ -45,7 +45,7 @@ struct Ball {
   bool glass = false;
 };
 
-// Around the pedestal, by bearing.
+// The balls around the pedestal, by bearing.
 const std::vector<Ball> kBalls = {
     {.name = "silver", .color = Rgb(0.95f, 0.93f, 0.88f), .metallic = 1, .roughness = 0},
     {.name = "red plastic", .color = {0.5f, 0.018f, 0.02f}, .roughness = 0.08f},

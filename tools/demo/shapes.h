@@ -24,10 +24,10 @@ struct Surface {
 // upwards, so that dp/du x dp/dv points out.
 using Parametrisation = std::function<dvec3(double u, double v)>;
 
-// What a texture covers: the table's square of x and z, or [0, 1]^2 of u and v.
+// The extent of a texture: the table's square of x and z, or [0, 1]^2 of u and v.
 enum class Uvs { Table, Parameters };
 
-// Smooth; 2 * columns * rows triangles, less those that a pole makes degenerate.
+// Smooth; 2 * columns * rows triangles, less the triangles that a pole makes degenerate.
 Surface tessellate(int columns, int rows, const Parametrisation& point, Uvs uvs = Uvs::Table);
 
 void append(Surface& surface, const Surface& more);
@@ -45,7 +45,7 @@ Parametrisation ball(dvec3 center, double radius);
 // (radius/R)^16 + (height/h)^16 = 1.
 Parametrisation tableTop();
 
-// Up the outside, over the lip and down the inside.
+// A profile up the outside, over the lip and down the inside.
 Parametrisation vase(dvec3 foot);
 
 // A tube along the (2, 3) torus knot, standing upright, turned about its vertical (radians).

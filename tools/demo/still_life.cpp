@@ -7,7 +7,7 @@
 namespace chromeball::demo {
 namespace {
 
-// `fine`: of 0.9 million triangles.
+// `fine`: with 0.9 million triangles.
 std::vector<Object> stillLife(bool fine) {
   const auto tessellate = [fine](int columns, int rows, const Parametrisation& point) {
     return demo::tessellate(fine ? 255 : columns, fine ? 254 : rows, point);

@@ -18,8 +18,8 @@ enum class Finish {
   Fine,        // Lambertian, of 0.9 million triangles
 };
 
-// A .glb of some 66,000 triangles, except Fine and Caustics, with a camera named Front. Throws
-// RunError.
+// Writes a .glb of some 66,000 triangles, except Fine and Caustics, with a camera named Front.
+// Throws RunError.
 void writeStillLife(const std::string& path, Finish finish);
 
 }  // namespace chromeball::demo

@@ -14,8 +14,8 @@ enum class Terrace {
   Model,       // the objects and a grey model of the terrace, rendered for the composite
 };
 
-// A .glb with a camera named View. The grey model has the same node names as the true terrace:
-// floor, wall, pillar (two of them), vase. Throws RunError.
+// Writes a .glb with a camera named View. The grey model has the same node names as the true
+// terrace: floor, wall, pillar (two of them), vase. Throws RunError.
 void writeTerrace(const std::string& path, Terrace what);
 
 // The probe that belongs to it: a clear sky, the sun to the left and behind us. Lat-long, `width` x

@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 WORK = ROOT / "build" / "orientation"
 CHROMEBALL = ROOT / "build" / "chromeball"
 SIZE = "320x240"
-# Of the Mapping node, degrees: none, a yaw, and tilted ones.
+# Rotations of the Mapping node, degrees: none, a yaw, and tilted ones.
 ROTATIONS = ((0, 0, 0), (0, 0, 50), (25, 0, 0), (0, -35, 0), (20, -40, 130))
 AGREES = 1e-3  # relMSE; a picture of another yaw differs by more than 0.1
 

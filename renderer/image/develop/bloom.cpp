@@ -87,7 +87,7 @@ Image bloom(const Image& image, const std::vector<WeightedGaussian>& mixture,
 
 namespace {
 
-constexpr double kCore = 0.02;  // degrees: of f0, f1 and f2
+constexpr double kCore = 0.02;  // degrees; the arrays are for f0, f1 and f2
 constexpr double kWeights[] = {0.384, 0.478, 0.138};
 constexpr double kFactors[] = {2.61e6, 20.91, 72.37};
 constexpr double kDegree2 = kPiD / 180 * (kPiD / 180);  // steradians
@@ -132,7 +132,7 @@ std::vector<WeightedGaussian> spencerGlare(double pixelsPerDegree) {
   };
   if (const double core = kCore / std::numbers::sqrt2; core >= narrowest && core <= widest)
     add(kWeights[0], core);
-  // s = 1 / (2 sigma^2) by equal steps of its logarithm; a Gaussian has the integral pi / s.
+  // Steps s = 1 / (2 sigma^2) equally in its logarithm; a Gaussian has the integral pi / s.
   for (double sigma = widest; sigma > 0 && sigma >= narrowest; sigma /= kRatio) {
     const double s = 1 / (2 * sigma * sigma), step = 2 * std::log(kRatio);
     const double density = kWeights[1] * kFactors[1] * gaussianDensity(3, s) +

@@ -34,13 +34,13 @@ Image bloom(const Image& image, const std::vector<WeightedGaussian>& mixture,
 //   0.384 f0 + 0.478 f1 + 0.138 f2,
 //   f0 = 2.61e6 exp(-(angle / 0.02)^2), f1 = 20.91 / (angle + 0.02)^3, f2 = 72.37 / (angle +
 //   0.02)^2,
-// each of integral 1 over the hemisphere. Without its flare lines (ciliary corona); the halo of the
-// lens is of the eye in the dark alone.
+// each of integral 1 over the hemisphere. Its flare lines (ciliary corona) are left out; the halo
+// of the lens occurs only for the eye in the dark.
 double spencerSpread(double angle);
 
-// Gaussians that sum to it within 2% from 0.1 to 8 degrees, of weights that sum to 1, where all
-// pixels are as large as in the middle of the picture. What is narrower than a tenth of a pixel,
-// and what the function has beyond Gaussians of 30 degrees or kMaxSigma, stays in the pixel.
+// Gaussians that sum to it within 2% from 0.1 to 8 degrees, with weights that sum to 1; all pixels
+// count as large as in the middle of the picture. The light of Gaussians narrower than a tenth of a
+// pixel, and of the function beyond Gaussians of 30 degrees or kMaxSigma, stays in the pixel.
 std::vector<WeightedGaussian> spencerGlare(double pixelsPerDegree);
 
 }  // namespace chromeball

@@ -34,7 +34,7 @@ std::vector<Disc> discsOf(const Image& depth, const ThinLens& lens, const ViewFr
   return discs;
 }
 
-// How far from each tile the discs are whose pixels may cover one of its own.
+// The distance from each tile within which discs may cover one of its pixels.
 class Reach {
  public:
   Reach(const std::vector<Disc>& discs, int width, int height)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The optics of a camera on a linear image, before tone mapping (HDRI book, section 9.2.5).
+// Applies the optics of a camera to a linear image, before tone mapping (HDRI book, section 9.2.5).
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace chromeball {
 
-// In the order in which they are applied.
+// The settings, in the order in which they are applied.
 struct DevelopSettings {
   std::optional<float> clip;  // R, G and B at most this: an image of low dynamic range, to compare
   std::optional<ThinLens> lens;
@@ -33,9 +33,9 @@ struct DevelopReport {
   size_t limited = 0;  // pixels whose radius of confusion is kMaxConfusionRadius
 };
 
-// Develops an image with channels R, G, B and possibly alpha, by which the colour is multiplied and
-// which is blurred with it. `depth` is for `lens` and else ignored. Needs the memory of at most
-// three more images; the depth blur, that of 12 bytes per pixel more.
+// Develops an image with channels R, G, B and possibly alpha; the colour is premultiplied by alpha,
+// and alpha is blurred with it. `depth` is for `lens` and else ignored. Needs the memory of at most
+// three more images; the depth blur needs 12 bytes per pixel more.
 DevelopReport develop(Image& image, const DevelopSettings& settings, const Image* depth,
                       const ViewFrame& frame);
 

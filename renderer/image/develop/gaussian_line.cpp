@@ -52,7 +52,7 @@ GaussianLine::GaussianLine(double sigma, int length, GaussianMethod method) {
   }
 }
 
-// A mirrored line has the period 2 x length: what reaches further is added to what is nearer. The
+// A mirrored line has the period 2 x length: taps that reach further are added to nearer ones. The
 // distances of a whole half period to both sides are the same pixel.
 void GaussianLine::foldTaps(int length) {
   if (int(taps_.size()) <= length) return;
@@ -67,7 +67,7 @@ void GaussianLine::foldTaps(int length) {
   taps_ = std::move(folded);
 }
 
-// The pixel is at u = (phase + 1/2) / factor - 1/2 from the reduced pixel that it is a part of.
+// The pixel is at u = (phase + 1/2) / factor - 1/2 from the reduced pixel that contains it.
 GaussianLine::Phase GaussianLine::splinePhase(int phase, int factor) {
   const double u = (phase + 0.5) / factor - 0.5, floor = std::floor(u);
   const double t = u - floor, t2 = t * t, t3 = t2 * t;
@@ -98,9 +98,9 @@ void GaussianLine::applyExact(std::span<double> line, std::vector<double>& scrat
 void GaussianLine::applyFast(std::span<double> line, std::vector<double>& scratch) const {
   const int reach = int(taps_.size()) - 1, n = int(line.size()), f = factor_;
   const int first = -kSplineReach;                            // reduced pixel of `filtered`
-  const int count = (n - 1) / f + 1 + 2 * kSplineReach;       // of these
+  const int count = (n - 1) / f + 1 + 2 * kSplineReach;       // number of them
   const int begin = first - reach - 2 * kSplineReach;         // reduced pixel of `sums`
-  const int extended = count + 2 * reach + 4 * kSplineReach;  // of these; 4 at each end are cut
+  const int extended = count + 2 * reach + 4 * kSplineReach;  // likewise; 4 at each end are cut
   scratch.assign(size_t(extended + count), 0.0);
   const std::span<double> sums(scratch.data(), size_t(extended));
   const std::span<double> filtered(scratch.data() + extended, size_t(count));

@@ -27,7 +27,7 @@ inline constexpr double kMaxExactSigma = 8;
 // the Gaussian's by -(f / sigma)^4 / 15, the kernel by less than 1e-4 of its peak.
 class GaussianLine {
  public:
-  // Of lines of `length` pixels; sigma in pixels, at least 0. 0 changes nothing.
+  // A filter for lines of `length` pixels; sigma in pixels, at least 0. 0 changes nothing.
   GaussianLine(double sigma, int length, GaussianMethod method);
 
   // Replaces the line by the filtered one. `scratch` is resized as needed.
@@ -41,7 +41,8 @@ class GaussianLine {
   void applyFast(std::span<double> line, std::vector<double>& scratch) const;
   void foldTaps(int length);
 
-  // Of the pixels of a reduced pixel: the weights of four reduced pixels, from `offset` on.
+  // The interpolation for a pixel at one phase of a reduced pixel: the weights of four reduced
+  // pixels, from `offset` on.
   struct Phase {
     int offset;
     std::array<double, 4> weights;
@@ -49,15 +50,16 @@ class GaussianLine {
   static Phase splinePhase(int phase, int factor);
 
   int factor_ = 1;             // f; 1: exact
-  std::vector<Phase> phases_;  // f of them
+  std::vector<Phase> phases_;  // one for each of f phases
   std::vector<double> taps_;   // of the distances 0, 1, ... to both sides
   size_t work_ = 1;
 };
 
-// Images beyond their borders: mirrored at the edge of the outermost pixel, again and again.
+// Continues images beyond their borders: mirrored at the edge of the outermost pixel, again and
+// again.
 
-// The pixel of [0, n) that mirrors show at `i`: ... 1 0 | 0 1 ... n-1 | n-1 n-2 ... Of period 2n.
-// A symmetric filter of sum 1 keeps the sum of an image that continues like this.
+// The pixel of [0, n) that mirrors show at `i`: ... 1 0 | 0 1 ... n-1 | n-1 n-2 ... The period is
+// 2n. A symmetric filter of sum 1 keeps the sum of an image that continues like this.
 inline int mirrored(int64_t i, int n) {
   if (i >= 0 && i < n) return int(i);
   const int64_t period = 2 * int64_t(n);

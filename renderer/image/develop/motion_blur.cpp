@@ -16,7 +16,7 @@ struct Tap {
 };
 
 void normalize(std::vector<Tap>& taps) {
-  constexpr double kNegligible = 1e-9;  // what rounding leaves of a second pixel
+  constexpr double kNegligible = 1e-9;  // weight of a second pixel due to rounding
   std::erase_if(taps, [](const Tap& tap) { return tap.weight < kNegligible; });
   double sum = 0;
   for (const Tap& tap : taps) sum += tap.weight;

@@ -13,7 +13,7 @@ struct Between {
   float t;
 };
 
-// Where pixel i of `count` lies among n texels.
+// The position of pixel i of `count` among n texels.
 Between position(int i, int count, int n) {
   const double u = std::clamp((i + 0.5) * n / count - 0.5, 0.0, double(n - 1));
   const int first = int(u);

@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// How an image lies in the view of its camera.
+// The place of an image in the view of its camera.
 
 // An image may be a part of the whole picture, whose middle the axis of the camera passes.
 struct ViewFrame {
@@ -17,7 +17,7 @@ struct ViewFrame {
   int width = 0, height = 0;  // of the picture
   double fov = 0;             // vertical, degrees; 0: unknown
 
-  // Of a pixel in the middle of the picture: its size at unit distance along the axis.
+  // The size of a pixel in the middle of the picture, at unit distance along the axis.
   double pixelSize() const { return 2 * std::tan(fov * kPiD / 360) / height; }
   double pixelsPerDegree() const { return kPiD / 180 / pixelSize(); }
 };
@@ -26,8 +26,8 @@ struct ViewFrame {
 // natural vignetting of a thin lens at strength 1. Needs the frame's fov.
 void vignette(Image& image, double strength, const ViewFrame& frame);
 
-// Multiplies R, G and B by those of `falloff`, which is stretched over the picture (bilinear). One
-// or at least three channels.
+// Multiplies R, G and B by the channels of `falloff`, which is stretched over the picture
+// (bilinear). One or at least three channels.
 void multiplyFalloff(Image& image, const Image& falloff, const ViewFrame& frame);
 
 }  // namespace chromeball

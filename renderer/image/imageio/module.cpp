@@ -42,8 +42,8 @@ class OpenedImage : public ModuleImage {
   }
 
  private:
-  // Whole strips the library inflates by itself: it returns damaged ones as they are, and cuts
-  // those that are longer than zlib would make them. libtiff reads the rows.
+  // The library inflates whole strips by itself: it returns damaged ones as they are, and cuts
+  // strips that are longer than zlib would make them. So rows are read, by libtiff.
   bool readRows(const OIIO::ImageSpec& spec, float* texels) {
     const size_t rowLength = size_t(spec.width) * size_t(spec.nchannels);
     for (int y = 0; y < spec.height; ++y)
@@ -53,7 +53,7 @@ class OpenedImage : public ModuleImage {
     return true;
   }
 
-  // Where 0 is white, of the grey and not of alpha. The library has turned all channels of 8 bits,
+  // Inverts grey, but not alpha, where 0 is white. The library has inverted all channels of 8 bits,
   // and no others.
   void turnGrey(const OIIO::ImageSpec& spec, float* texels) const {
     const size_t channels = size_t(spec.nchannels);
@@ -62,8 +62,8 @@ class OpenedImage : public ModuleImage {
       if ((i % channels == 0) != isTurned) texels[i] = 1 - texels[i];
   }
 
-  // Of grey the library names further samples, which the file does not, after colours. Three
-  // without alpha are colour whose writer states grey, as some do of floats.
+  // For grey images the library names further samples after colours, although the file does not.
+  // Three samples without alpha are colour whose writer states grey, as some do for floats.
   static std::vector<std::string> channelNames(const OIIO::ImageSpec& spec) {
     std::vector<std::string> names = spec.channelnames;
     const int photometric = spec.get_int_attribute("tiff:PhotometricInterpretation", -1);

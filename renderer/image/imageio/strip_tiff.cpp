@@ -59,7 +59,7 @@ std::vector<uint8_t> stripTiff(std::span<const uint8_t> file) {
     entries.insert(entries.end(), entryOf(i).begin(), entryOf(i).end());
   }
 
-  // In place of the directory, or behind the image if it has become longer.
+  // Goes in place of the directory, or behind the image if it has become longer.
   const size_t end = first + count * entryBytes, next = std::min(offsetBytes, file.size() - end);
   std::vector<uint8_t> kept;
   append(kept, entries.size() / entryBytes, countBytes, bigEndian);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Removes metadata from TIFF files: colour profiles, EXIF, comments. We do not use them, and
 // OpenImageIO 2.4 does not parse damaged ones safely: it follows the tag table of an ICC profile
-// beyond the end of the profile. Of the orientation libtiff applies a half, mirrored but with its
-// sides unswapped, to the images that it converts to RGB (YCbCr, JPEG), so that our reader, which
-// turns all alike, would turn these twice.
+// beyond the end of the profile. libtiff applies half of the orientation (mirrored, but with sides
+// unswapped) to the images that it converts to RGB (YCbCr, JPEG), so that our reader, which turns
+// all alike, would turn these twice.
 //
 // States BitsPerSample where a file leaves it out, as files of black and white do: TIFF 6.0's
 // default is 1, OpenImageIO's is 8.

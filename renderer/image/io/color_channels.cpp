@@ -15,7 +15,7 @@ std::string inLowerCase(std::string_view text) {
   return lower;
 }
 
-// "ViewLayer" and "Combined" of "ViewLayer.Combined".
+// The segments of a name: "ViewLayer" and "Combined" of "ViewLayer.Combined".
 std::vector<std::string_view> segmentsOf(std::string_view name) {
   std::vector<std::string_view> segments;
   for (size_t begin = 0; begin <= name.size();) {
@@ -26,8 +26,8 @@ std::vector<std::string_view> segmentsOf(std::string_view name) {
   return segments;
 }
 
-// In lower case: "denoising" and "albedo" of "Denoising Albedo", "crypto" and "object" of
-// "CryptoObject00", "z" and "depth" of "ZDepth".
+// The words of a name, in lower case: "denoising" and "albedo" of "Denoising Albedo", "crypto" and
+// "object" of "CryptoObject00", "z" and "depth" of "ZDepth".
 std::vector<std::string> wordsOf(std::string_view segment) {
   const auto is = [&](size_t i, int (*kind)(int)) {
     return i < segment.size() && kind(static_cast<unsigned char>(segment[i])) != 0;
@@ -46,8 +46,8 @@ std::vector<std::string> wordsOf(std::string_view segment) {
 
 enum class Content { Light, Surface, Data };  // Surface: the colour of a material
 
-// By the names of our own layers and of those of Blender, Arnold, V-Ray, Houdini, Cryptomatte and
-// others.
+// The content, judged by the layer names of this program, Blender, Arnold, V-Ray, Houdini,
+// Cryptomatte and others.
 Content contentOf(std::string_view segment) {
   constexpr std::array kDataSegments = {"node",    "clipped",  "material", "ratio",
                                         "samples", "variance", "invalid",  "zback"};
@@ -60,14 +60,14 @@ Content contentOf(std::string_view segment) {
       "mattes",   "count",     "error",     "distance", "coverage", "opacity",     "roughness",
       "metallic", "metalness", "disparity", "facing",   "st",       "motionvector"};
   constexpr std::array kDataPartsOfWords = {"depth", "crypto"};
-  // The filters of V-Ray are what its raw light is multiplied by.
+  // V-Ray's filters are factors of its raw light.
   constexpr std::array kSurfaceWords = {"basecolor", "filter", "wire"};
   constexpr std::array kSurfacePartsOfWords = {"albedo"};
-  // Before "color": "BaseColor", "diffuse_color".
+  // Words before "color": "BaseColor", "diffuse_color".
   constexpr std::array kOfSurfaces = {"base",       "diffuse",      "specular", "wire",
                                       "subsurface", "transmission", "object",   "material",
                                       "surface",    "vertex"};
-  // Of "Pworld", "Nn" and "Pref", normals and positions.
+  // Spaces in names of normals and positions: "Pworld", "Nn", "Pref".
   constexpr std::array kSpaces = {"world", "camera", "cam",    "object", "obj", "ref", "rest",
                                   "eye",   "view",   "screen", "n",      "g",   "s",   "w"};
   const auto isIn = [](const auto& list, std::string_view word) {
@@ -93,8 +93,8 @@ Content contentOf(std::string_view segment) {
   return Content::Light;
 }
 
-// Alpha, a normal, a position, a depth; also "N" of the channel "View.N.X". Elsewhere a letter says
-// nothing: the view "A".
+// Whether a letter names alpha, a normal, a position or a depth; also "N" of the channel
+// "View.N.X". Elsewhere a letter has no meaning: the view "A".
 bool isLetterOfNoLight(const std::vector<std::string_view>& segments) {
   const auto is = [](std::string_view segment) {
     return segment.size() == 1 && std::string_view("anpzANPZ").find(segment) != segment.npos;
@@ -110,7 +110,7 @@ Content contentOf(const std::vector<std::string_view>& segments) {
   return content;
 }
 
-// The least is the best; nullopt: no light.
+// The rank of a layer, the least being the best; nullopt: no light.
 constexpr int kUnnamed = 0, kWithBeauty = 5, kOtherLayer = 6, kGrey = 7;
 std::optional<int> colorRank(const std::string& layer) {
   constexpr std::array kLight = {"combined", "beauty", "rgba", "c"};

@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// The channels of one part of a file. A part of several has a name, which says what it holds as
-// that of a layer does.
+// The channels of one part of a file. If there are several parts, each has a name, which describes
+// its contents as a layer's name does.
 struct PartChannels {
   std::string name;  // empty: the only part, or without a name
   std::vector<std::string> channels;
@@ -23,11 +23,11 @@ struct ColorChannels {
   std::vector<std::string> others;    // layers with colour that were not taken
 };
 
-// In this order: R, G and B without a layer; those of the layers Combined, beauty, rgba and C;
-// those of a layer with the word beauty; those of another layer, unless a word of its name says
-// that it is no light (AO, albedo, normal, depth, mask, crypto, ...); Y; the only channel, if its
-// name does not say that it is something else (A, Z, R, ...) or no light. nullopt if there is none
-// of these.
+// The colour channels, searched in this order: R, G and B without a layer; in the layers Combined,
+// beauty, rgba and C; in a layer with the word beauty; in another layer, unless a word of its name
+// says that it is no light (AO, albedo, normal, depth, mask, crypto, ...); Y; the only channel, if
+// its name does not say that it is something else (A, Z, R, ...) or no light. nullopt if there is
+// none of these.
 std::optional<ColorChannels> findColorChannels(std::span<const PartChannels> parts);
 
 // Whether R, G and B of a layer of this name are a colour, of light or of a surface (albedo), that

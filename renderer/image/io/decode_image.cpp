@@ -49,9 +49,9 @@ std::unique_ptr<SampleReader> openTexture(std::span<const uint8_t> file, const s
   return format == ImageFormat::Png ? openPng(file, check) : openJpeg(file, check);
 }
 
-// Widens rows to RGBA texels, of samples of type T that are multiplied by `unit`. A row at a time,
-// so that each page of the result is touched once and no other buffer is large: page faults cost
-// about as much as decoding.
+// Widens rows of samples of type T, multiplied by `unit`, to RGBA texels. Takes a row at a time, so
+// that each page of the result is touched once and no other buffer is large: page faults cost about
+// as much as decoding.
 template <class T, class Texel>
 std::vector<Texel> readTexels(SampleReader& reader, typename Texel::value_type unit,
                               typename Texel::value_type opaque) {

@@ -36,10 +36,10 @@ uint64_t decodedBytes(std::span<const uint8_t> file);
 
 // Decodes WebP by libwebp.
 
-// As decodeImage(), for a WebP file.
+// The same as decodeImage(), for a WebP file.
 DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name);
 
-// As decodedBytes().
+// The same as decodedBytes(), for a WebP file.
 uint64_t webpBytes(std::span<const uint8_t> file);
 
 // PNG and JPEG: files of integer samples, decoded row by row.
@@ -51,7 +51,7 @@ struct SampleLayout {
   bool hasAlpha() const { return channels % 2 == 0; }
 };
 
-// Throws if an image of this size must not be read.
+// Throws if an image of this size may not be read.
 using CheckSize = std::function<void(const SampleLayout&)>;
 
 // An open file. Metadata is skipped: profiles, EXIF blocks and comments are never parsed.
@@ -63,16 +63,17 @@ class SampleReader {
   virtual ~SampleReader() = default;
   const SampleLayout& layout() const { return layout_; }
 
-  // Decodes all rows in turn; once. Throws std::runtime_error with the reason, and what `row`
-  // throws.
+  // Decodes all rows in turn; once. Throws std::runtime_error with the reason, and passes on
+  // exceptions of `row`.
   virtual void read(const Row& row) = 0;
 
  protected:
   SampleLayout layout_;
 };
 
-// Read the header of a file, which must outlive the reader. `check` runs before memory is allocated
-// for the image. Throw std::runtime_error with the reason, and what `check` throws.
+// These read the header of a file, which must outlive the reader. `check` runs before memory is
+// allocated for the image. They throw std::runtime_error with the reason, and pass on exceptions of
+// `check`.
 //
 // Low bit depths become 8 bits, palettes RGB, and transparency alpha.
 std::unique_ptr<SampleReader> openPng(std::span<const uint8_t> file, const CheckSize& check);

@@ -29,7 +29,7 @@ std::optional<double> positive(double number) {
   return number > 0 && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
-// Where the file has it; a TIFF is a block itself.
+// The block where the file has it; a TIFF is a block itself.
 std::span<const uint8_t> blockOf(std::span<const uint8_t> file) {
   switch (imageFormat(file)) {
     case ImageFormat::Jpeg:
@@ -43,7 +43,7 @@ std::span<const uint8_t> blockOf(std::span<const uint8_t> file) {
   }
 }
 
-// In the directory of EXIF.
+// Looks a tag up in the directory of EXIF.
 std::optional<double> findExif(const TiffBlock& block, Tag tag) {
   constexpr double kMostBytes = 0x1p53;  // of a file, so that a double tells its positions
   if (!block.isTiff()) return {};

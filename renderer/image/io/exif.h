@@ -10,7 +10,7 @@
 
 namespace chromeball {
 
-// Above 0 and finite; nullopt where the file does not tell.
+// Values are above 0 and finite; nullopt if the file does not state them.
 struct Exif {
   std::optional<double> exposureTime;  // seconds
   std::optional<double> aperture;      // f-number
@@ -18,17 +18,17 @@ struct Exif {
   std::optional<double> focalLength35;  // mm, of the same diagonal field of view on 35 mm film
 };
 
-// From a JPEG, PNG or TIFF; from the attributes expTime, aperture and isoSpeed of an .exr
-// (ImfStandardAttributes.h). Empty for other files and for damaged blocks. Throws InputError if the
-// file cannot be read.
+// Reads the EXIF of a JPEG, PNG or TIFF, or the attributes expTime, aperture and isoSpeed of an
+// .exr (ImfStandardAttributes.h). Empty for other files and for damaged blocks. Throws InputError
+// if the file cannot be read.
 Exif readExif(const std::filesystem::path& path);
 
-// How the image of a JPEG, PNG or TIFF is stored (image.h), 1 to 8; 1 if the file does not
-// tell.
+// How the image of a JPEG, PNG or TIFF is stored (image.h), 1 to 8; 1 if the file does not state
+// it.
 int exifOrientation(std::span<const uint8_t> file);
 
-// Whether the colours of a JPEG, PNG or TIFF are stated to be others than those of sRGB: cameras
-// that are set to Adobe RGB state it here, often without a profile.
+// Whether the EXIF of a JPEG, PNG or TIFF states a colour space other than sRGB: cameras that are
+// set to Adobe RGB do, often without a profile.
 bool exifStatesOtherColors(std::span<const uint8_t> file);
 
 }  // namespace chromeball

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of a data window that is not the display window.
+// The placement of a data window in the display window; none if they are the same.
 std::optional<Placement> placementOf(const Imath::Box2i& data, const Imath::Box2i& display) {
   const auto length = [](int min, int max) {
     return int(std::clamp<int64_t>(int64_t(max) - min + 1, 0, std::numeric_limits<int>::max()));
@@ -42,7 +42,7 @@ std::optional<Placement> placementOf(const Imath::Box2i& data, const Imath::Box2
                    length(display.min.x, display.max.x), length(display.min.y, display.max.y)};
 }
 
-// Layer by layer; of each, R, G, B and A first, then the others by their names.
+// Sorts layer by layer; in each, R, G, B and A come first, then the others by name.
 void sortChannels(std::vector<std::string>& channels) {
   const auto key = [](std::string_view channel) {
     const size_t dot = channel.rfind('.') + 1;  // 0: none
@@ -54,7 +54,7 @@ void sortChannels(std::vector<std::string>& channels) {
             [&](const auto& a, const auto& b) { return key(a) < key(b); });
 }
 
-// Luminance and chroma, whose chroma has half the resolution (ImfRgba.h).
+// Whether the channels are luminance and chroma; the chroma has half the resolution (ImfRgba.h).
 bool isLuminanceChroma(const Imf::ChannelList& channels) {
   const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
   int count = 0;
@@ -89,7 +89,7 @@ void checkExrLength(const fs::path& path, int width, int height, uint64_t texelB
 
 }  // namespace
 
-// Without the colour that luminance and chroma stand for: their three channels.
+// The channels as stored: luminance and chroma, if any, not the colour that they encode.
 std::vector<std::string> channelsOf(const Imf::ChannelList& channels) {
   std::vector<std::string> names;
   if (isLuminanceChroma(channels)) {
@@ -116,7 +116,7 @@ class ExrInput::Part {
  public:
   explicit Part(const fs::path& path) : path_(path), file_(path.c_str()) {}
 
-  // Every part's channels; none of deep ones.
+  // Every part's channels; none for deep parts.
   std::vector<PartChannels> parts() const {
     std::vector<PartChannels> parts(size_t(file_.parts()));
     for (int i = 0; i < file_.parts(); ++i) {
@@ -228,7 +228,7 @@ void ExrInput::readHeader() {
 }
 
 void ExrInput::read(int top, int count, float* texels) {
-  // Of whole blocks; so many texels are decoded in some milliseconds.
+  // The size of a chunk of whole blocks; so many texels are decoded in some milliseconds.
   constexpr int kTexels = 1 << 19;
   const int blocks = std::max(kTexels / (width_ * rowsOfBlock_), 1);
   readByLibrary(path_, [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An open OpenEXR file: what the readers of whole images and of bands of rows share.
+// An open OpenEXR file, shared by the readers of whole images and of bands of rows.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace chromeball {
 
-// Of the parts of a file the one that has its colour (color_channels.h), else the first; of levels
-// the largest. Functions throw InputError.
+// Reads the part of a file that has its colour (color_channels.h), else the first; the largest of
+// its levels. Functions throw InputError.
 class ExrInput {
  public:
   enum class Numbers { Half, Float, Integer, Mixed };  // of the channels
 
-  // `maxNumbers`: that the image may have.
+  // `maxNumbers`: the most that the image may have.
   ExrInput(const std::filesystem::path& path, uint64_t maxNumbers);
   ~ExrInput();
 
@@ -31,7 +31,8 @@ class ExrInput {
   const std::string& part() const { return partName_; }  // empty: the only one
   const std::optional<Chromaticities>& primaries() const { return primaries_; }
   double pixelAspectRatio() const { return pixelAspectRatio_; }  // width / height
-  // Of several layers or parts with colour, which one is the file's: one line; else empty.
+  // If several layers or parts have colour: one line that names the one that was chosen; else
+  // empty.
   const std::string& choice() const { return choice_; }
   Numbers numbers() const { return numbers_; }
   bool isTiled() const { return isTiled_; }

@@ -11,8 +11,8 @@
 
 namespace chromeball {
 
-// Those of type string, int, float, double and m44f, and `envmap`, by their names in the file;
-// without those that say how the image is stored.
+// The attributes of type string, int, float, double and m44f, and `envmap`, by their names in the
+// file; without the ones that say how the image is stored.
 Metadata metadataOf(const Imf::Header& header);
 std::optional<Chromaticities> chromaticitiesOf(const Imf::Header& header);
 void setMetadata(const Metadata& metadata, Imf::Header& header);

@@ -98,8 +98,8 @@ void interleave(std::span<const Image* const> images, int top, Image& rows) {
   assert(offset == rows.channels);
 }
 
-// Whole blocks of compression; else about kFloatsWrittenAtOnce, and no more than keeps all threads
-// busy.
+// The number of rows to write at once: whole blocks of compression, about kFloatsWrittenAtOnce, and
+// no more than keep all threads busy.
 int rowsAtOnce(const ExrLayout& layout) {
   constexpr int kMost = 256;
   const auto floatsPerRow = int64_t(layout.width) * int64_t(layout.channels.size());
@@ -187,7 +187,8 @@ void ExrRowsWriter::write(std::span<const Image* const> images) { output_->write
 
 void ExrRowsWriter::commit(const std::function<void(Archive&)>& state) { output_->commit(state); }
 
-// The rows at once, also as halves; and of OpenEXR two rows a thread, with their compression.
+// The rows written at once, also as halves; and OpenEXR's two rows per thread, with their
+// compression.
 double ExrRowsWriter::bufferBytes(int width, size_t channels) {
   const double row = double(sizeof(float)) * width * double(channels);
   const double atOnce = std::max(double(sizeof(float)) * double(kFloatsWrittenAtOnce), row);
@@ -264,7 +265,7 @@ Image ExrRowsReader::read(int top, int count) {
   return rows;
 }
 
-// Of OpenEXR two blocks a thread, with their compression.
+// OpenEXR's buffers: two blocks per thread, with their compression.
 double ExrRowsReader::bufferBytes() const {
   const double row = double(sizeof(float)) * width() * double(channels().size());
   return row * 2.0 * std::thread::hardware_concurrency() * 3 * input_->rowsOfBlock();

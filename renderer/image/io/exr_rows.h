@@ -29,7 +29,7 @@ struct ExrLayout {
   bool separateRows = false;
 };
 
-// A file of scanlines. Atomic: it appears with commit(); without, nothing remains.
+// A file of scanlines. Atomic: it appears with commit(); without that, nothing remains.
 class ExrRowsWriter {
  public:
   // Throws RunError, as all functions do.
@@ -39,10 +39,11 @@ class ExrRowsWriter {
   // The next rows, from the top down: images of one size, which have the layout's channels in turn.
   void write(std::span<const Image* const> images);
 
-  // After the last row. `state`: what else the file holds (exr_state.h); may be empty.
+  // To be called after the last row. `state`: further contents of the file (exr_state.h); may be
+  // empty.
   void commit(const std::function<void(Archive&)>& state = {});
 
-  // What writing takes besides the images, at most. Bytes.
+  // The most memory that writing takes besides the images, in bytes.
   static double bufferBytes(int width, size_t channels);  // of separate rows
 
  private:
@@ -50,7 +51,7 @@ class ExrRowsWriter {
   std::unique_ptr<Output> output_;
 };
 
-// OpenEXR files with layers, attributes, and what this program reads again (exr_state.h).
+// OpenEXR files with layers, attributes, and state that this program reads again (exr_state.h).
 
 // Writes float32 scanlines with ZIP compression, and output.state if it is set. Atomic. Throws
 // RunError.
@@ -64,7 +65,7 @@ class ExrInput;
 // ("FILE: reason").
 class ExrRowsReader {
  public:
-  // `maxNumbers`: that the image may have.
+  // `maxNumbers`: the most that the image may have.
   ExrRowsReader(const std::filesystem::path& path, uint64_t maxNumbers);
   ExrRowsReader(ExrRowsReader&&) noexcept;
   ~ExrRowsReader();
@@ -73,13 +74,13 @@ class ExrRowsReader {
   int height() const;
   const std::vector<std::string>& channels() const;
   const Metadata& metadata() const;
-  const std::optional<Placement>& placement() const;  // in the display window, if not that
+  const std::optional<Placement>& placement() const;  // in the display window, if it differs
   const std::optional<Chromaticities>& primaries() const;
 
   // All channels of `count` rows from `top` on.
   Image read(int top, int count);
 
-  // What reading takes besides that image, at most. Bytes.
+  // The most memory that reading takes besides that image, in bytes.
   double bufferBytes() const;
 
  private:

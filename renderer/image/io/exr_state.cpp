@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Read by several threads at once.
+// A file that several threads read at once.
 class SharedFile {
  public:
   explicit SharedFile(const fs::path& path)

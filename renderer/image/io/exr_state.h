@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this program reads again, behind the image of an .exr, where other programs do not look.
+// State that this program reads again, behind the image of an .exr, where other programs do not
+// look.
 //
 //   blocks    of Archive::blocks(), one after the other
 //   head      the rest of the archive
@@ -16,7 +17,7 @@
 
 namespace chromeball {
 
-// In the byte order of the machine, which is little-endian (x86-64).
+// A block in the byte order of the machine, which is little-endian (x86-64).
 struct ExrStateBlock {
   uint64_t length, checksum;
 };
@@ -32,8 +33,8 @@ struct ExrStateFooter {
 void appendExrState(const std::filesystem::path& file, const std::filesystem::path& path,
                     const std::function<void(Archive&)>& state);
 
-// Reads it; `read` may leave out the blocks and the end. The head is checked before `read` is
-// called, blocks when they are read. Throws InputError if there is none, or if it is damaged.
+// Reads the state; `read` may leave out the blocks and the end. The head is checked before `read`
+// is called, blocks when they are read. Throws InputError if there is none, or if it is damaged.
 void readExrState(const std::filesystem::path& path, const std::function<void(Archive&)>& read);
 
 }  // namespace chromeball

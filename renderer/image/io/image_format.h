@@ -18,7 +18,7 @@ inline constexpr size_t kFormatBytes = 12;  // that imageFormat() looks at, at m
 
 ImageFormat imageFormat(std::span<const uint8_t> firstBytes);
 
-// What readers' libraries throw about a damaged file becomes an InputError of one line.
+// Turns exceptions of readers' libraries about a damaged file into an InputError of one line.
 
 // Throws a library's message about `path` as an InputError of one line.
 [[noreturn]] void throwUnreadable(const std::filesystem::path& path, std::string reason);

@@ -22,8 +22,8 @@ Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
   return out;
 }
 
-// Of the three channels, or more, of the file's colour. nullopt: Rec. 709's, or grey, which has
-// none.
+// The primaries of the file's colour, in three channels or more. nullopt: Rec. 709's, or grey,
+// which has none.
 std::optional<Chromaticities> primariesOf(const std::vector<size_t>& channels,
                                           const ImageFile& file) {
   const bool isGrey = channels[0] == channels[1];
@@ -68,7 +68,7 @@ std::optional<Image> findChannels(const ImageFile& file, const std::string& pref
   return std::nullopt;
 }
 
-// As extract(), of a file whose image is no longer needed: in its place, where the result is not
+// The same as extract(), for a file whose image is no longer needed: in place if the result is not
 // larger.
 Image taken(ImageFile& file, const ChannelIndices& channels) {
   const size_t stride = size_t(file.image.channels), count = channels.size();

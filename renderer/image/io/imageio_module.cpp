@@ -39,8 +39,8 @@ struct ImageioModule {
 ImageioModule loadImageioModule() {
   const fs::path folder = ownFolder();
   std::string problem;
-  // Beside this code; where the installed library is, seen from the installed command; by the
-  // system's search.
+  // Looks beside this code; where the installed library is, seen from the installed command; and in
+  // the system's search path.
   for (const fs::path& path : {folder / kModuleName, folder / CHROMEBALL_BIN_TO_LIB / kModuleName,
                                fs::path(kModuleName)}) {
     if (path.has_parent_path() && !fs::exists(path)) continue;
@@ -72,8 +72,8 @@ std::unique_ptr<ModuleImage> openModuleImage(const char* format, std::span<const
   std::unique_ptr<ModuleImage> image(module.open(format, file.data(), file.size(), path.c_str()));
   const ModuleImageHeader& header = image->header();
   checkImageSize(path, header.width, header.height, int64_t(header.channels.size()));
-  // Of formats whose compression has no known bound; kMaxRatio is an estimate, which small images
-  // may exceed. For TIFF see pictureDirectory().
+  // Limits for formats whose compression has no known bound; kMaxRatio is an estimate, which small
+  // images may exceed. For TIFF see pictureDirectory().
   constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxRatio = 100'000;
   if (header.bytes > std::max(kAlwaysAllowed, file.size() * kMaxRatio))
     throwInput("{}: too short for {} x {} texels", path.string(), header.width, header.height);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The formats that only OpenImageIO reads (TIFF). It loads 250 libraries, so it is behind a module,
-// libchromeball_imageio.so, which is loaded for the first file that needs it. This header is all
-// that module and library share.
+// libchromeball_imageio.so, which is loaded for the first file that needs it. The module and the
+// library share only this header.
 #pragma once
 
 #include <cstdint>

@@ -98,7 +98,7 @@ class JpegReader : public SampleReader {
   // libjpeg only warns of texels that the file does not have, and makes them up. Other warnings are
   // of bytes that it skips and of versions.
   static void onWarning(j_common_ptr jpeg, int level) {
-    if (level >= 0) return;  // what it traces
+    if (level >= 0) return;  // a trace
     switch (jpeg->err->msg_code) {
       case JWRN_JPEG_EOF:
         if (self(jpeg).isOneHuffmanScan_) break;  // then JWRN_HIT_MARKER tells of missing bits

@@ -114,7 +114,7 @@ double bigEndianNumber(std::span<const uint8_t> bytes) {
   return number;
 }
 
-// Numbers of `size` bytes, that of the width first.
+// The ratio of two numbers of `size` bytes, the width's first.
 double ratioIn(std::span<const uint8_t> data, size_t at, size_t size) {
   if (data.size() < at + 2 * size) return 1;
   return bigEndianNumber(data.subspan(at + size, size)) / bigEndianNumber(data.subspan(at, size));

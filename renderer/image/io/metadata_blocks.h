@@ -8,7 +8,7 @@
 
 namespace chromeball {
 
-// Before the EXIF block in its segment of a JPEG.
+// Comes before the EXIF block in its segment of a JPEG.
 inline constexpr std::string_view kExifName("Exif\0\0", 6);
 
 // The EXIF block (exif.h), a part of `file`; empty if there is none.
@@ -24,10 +24,10 @@ std::span<const uint8_t> jpegJfif(std::span<const uint8_t> file);
 // The data of the first chunk of this type, such as "gAMA"; empty if there is none.
 std::span<const uint8_t> pngChunk(std::span<const uint8_t> file, std::string_view type);
 
-// The width of a pixel over its height, as the file's resolutions state it: those of a TIFF's first
-// image (TIFF 6.0, XResolution), of a JPEG's JFIF header and of a PNG's pHYs. 1 if the file states
-// none, or if they differ by less than a percent, as rounding makes them. Of the image as it is to
-// be seen (EXIF orientation).
+// The width of a pixel over its height, from the resolutions of a TIFF's first image (TIFF 6.0,
+// XResolution), a JPEG's JFIF header or a PNG's pHYs. 1 if the file states none, or if they differ
+// by less than a percent, as through rounding. Refers to the image as it is to be seen (EXIF
+// orientation).
 double pixelAspectRatio(std::span<const uint8_t> file);
 
 }  // namespace chromeball

@@ -16,8 +16,9 @@ void checkOutputFile(const std::string& path, const std::vector<std::string_view
 // links. Empty names are ignored.
 void checkDistinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
-// For an image that a scene file names: as checkWritable (image/io/write_image.h), but the image's
-// folder may be missing if its parent exists. makeFolder() then creates it, after all other checks.
+// Checks an image that a scene file names, as checkWritable (image/io/write_image.h) does, but the
+// image's folder may be missing if its parent exists. makeFolder() then creates it, after all other
+// checks.
 void checkSceneOutput(const std::string& path);
 void makeFolder(const std::string& path);  // throws RunError
 

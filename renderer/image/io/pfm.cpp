@@ -63,7 +63,7 @@ Image readPfm(const std::filesystem::path& path, Messages& messages) {
   checkImageSize(path, width, height, channels);
   checkImageMemory(path, width, height, channels);
   const size_t rowBytes = size_t(width) * channels * sizeof(float);
-  // Or all up to the line's end, of which nothing but the length of the file can tell.
+  // Or all white space up to the line's end; only the length of the file can tell.
   if (const size_t end = text.find('\n', position);
       end < text.find_first_not_of(kSpace, position) && bytes.size() == end + 1 + rowBytes * height)
     begin = end + 1;

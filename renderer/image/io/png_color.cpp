@@ -123,7 +123,7 @@ PngColor pngColor(std::span<const uint8_t> file) {
   if (!pngChunk(file, "sRGB").empty()) return {.transfer = Transfer::Srgb};
   PngColor color;
   if (const auto gamma = numbersIn<1>(pngChunk(file, "gAMA")); gamma && (*gamma)[0] > 0) {
-    // What writers of sRGB state is 1/2.2, a power near its curve.
+    // Writers of sRGB state 1/2.2, a power near its curve.
     constexpr double kOfSrgb = 1 / 2.2, kTolerance = 0.05;
     const double exponent = 1 / (*gamma)[0];
     const bool isSrgb = std::abs((*gamma)[0] / kOfSrgb - 1) <= kTolerance;
@@ -181,7 +181,7 @@ class PngReader : public SampleReader {
       // The caller checks the size; no chunk is longer than the file.
       png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
       png_set_chunk_malloc_max(png_, fileBytes);
-      // -1: all ancillary chunks but tRNS.
+      // -1 means all ancillary chunks but tRNS.
       png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
       png_read_info(png_, info_);
     });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a PNG says of its colour (ISO/IEC 15948, 11.3.3; cICP: third edition), for images of light;
-// textures of models ignore it (glTF 2.0, 3.8.2).
+// The colour space that a PNG states (ISO/IEC 15948, 11.3.3; cICP: third edition), for images of
+// light; textures of models ignore it (glTF 2.0, 3.8.2).
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@ using DecodeSample = std::function<float(float)>;
 
 struct PngColor {
   DecodeSample decode = srgbToLinear;
-  std::optional<Chromaticities> primaries = {};  // nullopt: of sRGB
+  std::optional<Chromaticities> primaries = {};  // nullopt: sRGB's
   std::optional<Transfer> transfer = {};         // nullopt: not stated, `decode` is of sRGB
 };
 
-// By the chunk cICP, else by gAMA and cHRM, which sRGB overrides; they approximate an ICC profile
-// (iCCP), which is not read. Throws std::runtime_error for a cICP whose samples cannot be decoded
-// here, such as those of PQ and HLG.
+// The colour space, from the chunk cICP, else from gAMA and cHRM, which sRGB overrides; they
+// approximate an ICC profile (iCCP), which is not read. Throws std::runtime_error for a cICP whose
+// samples cannot be decoded here, such as PQ and HLG.
 PngColor pngColor(std::span<const uint8_t> file);
 
 }  // namespace chromeball

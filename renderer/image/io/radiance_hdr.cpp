@@ -166,7 +166,8 @@ class Reader {
     messages_.push_back({kind, path_.string() + ": " + what});
   }
 
-  // Of lines that the header may repeat without end: with their number, after the header.
+  // Messages about lines that the header may repeat without end are reported once, with the number
+  // of lines, after the header.
   void sayOnce(Message::Kind kind, const std::string& what) { ++repeated_[{kind, what}]; }
 
   void sayRepeated() {
@@ -242,7 +243,7 @@ class Reader {
   size_t position_ = 0;
   int width_ = 0, height_ = 0;  // of the rows, as they are stored
   bool areColumns_ = false, reversesOrder_ = false, reversesRows_ = false;
-  double exposure_ = 1;  // the products of these lines
+  double exposure_ = 1;  // the products of EXPOSURE and COLORCORR
   glm::dvec3 correction_{1}, scale_{1};
   std::optional<Chromaticities> primaries_;
   std::map<std::pair<Message::Kind, std::string>, int> repeated_;

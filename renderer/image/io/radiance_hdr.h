@@ -15,7 +15,7 @@
 
 namespace chromeball {
 
-// What comment lines of the header, "# NAME=VALUE", say.
+// The contents of the header's comment lines, "# NAME=VALUE".
 using HdrComments = std::map<std::string, std::string>;
 
 struct RadianceHdr {
@@ -31,8 +31,8 @@ RadianceHdr readRadianceHdr(const std::filesystem::path& path);
 inline constexpr float kMaxRgbe = 255 * 0x1p119f;  // the largest channel of a texel, 1.7e38
 
 // Writes the first three channels, each rounded to the nearest mantissa for the texel's shared
-// exponent. RGBE cannot hold negative, infinite or NaN channels: these become 0; what is above
-// kMaxRgbe becomes that. Throws RunError.
+// exponent. RGBE cannot hold negative, infinite or NaN channels: these become 0; channels above
+// kMaxRgbe become kMaxRgbe. Throws RunError.
 void writeRadianceHdr(const std::filesystem::path& path, const Image& image,
                       const HdrComments& comments = {});
 

@@ -114,8 +114,9 @@ ImageFile readHdr(const fs::path& path) {
   return file;
 }
 
-// Warns of a profile (ISO 15076-1) unless its description says sRGB, in ASCII or UTF-16. Of a PNG
-// the name is enough, since the profile itself is compressed. `space`: what colours are taken as.
+// Warns of a profile (ISO 15076-1) unless its description says sRGB, in ASCII or UTF-16. For a PNG
+// only the name is searched, since the profile itself is compressed. `space`: the space that
+// colours are assumed to have.
 void warnOfProfile(std::span<const uint8_t> profile, const char* space, const fs::path& path,
                    Messages& messages) {
   using namespace std::string_view_literals;
@@ -140,7 +141,7 @@ void warnOfColors(std::span<const uint8_t> profile, std::span<const uint8_t> fil
                                     path.string())});
 }
 
-// Of light: unless other chunks of a PNG say what the profile does.
+// The colour profile of an image of light; empty if other chunks of a PNG state what it would.
 std::span<const uint8_t> unreadProfile(ImageFormat format, std::span<const uint8_t> bytes) {
   if (format == ImageFormat::Jpeg) return jpegProfile(bytes);
   for (const char* chunk : {"cICP", "sRGB", "cHRM", "gAMA"})
@@ -184,7 +185,7 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   return file;
 }
 
-// Of light; `file` has its kind of numbers.
+// Reads the colour space of a TIFF of light; `file` has its kind of numbers.
 void readTiffColors(std::span<const uint8_t> bytes, const fs::path& path, ImageFile& file) {
   constexpr uint16_t kProfileTag = 34675;
   const TiffBlock tiff(bytes);

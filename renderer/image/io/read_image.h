@@ -21,7 +21,7 @@ namespace chromeball {
 using Matrix44 = std::array<float, 16>;
 using Metadata = std::map<std::string, std::variant<std::string, int, float, double, Matrix44>>;
 
-// That of this name, whatever its type; nullopt if there is none, or a text or a matrix.
+// The number with this name, whatever its type; nullopt if there is none, or a text or a matrix.
 std::optional<double> metadataNumber(const Metadata& metadata, const std::string& name);
 
 // OpenEXR's attribute of probes in Metadata, and its values (ImfEnvmap.h).
@@ -39,7 +39,7 @@ enum class IntegerTexels {
 // The encoding that a file of integers states; Other: neither of the two.
 enum class Transfer { Srgb, Linear, Other };
 
-// The position of an image's first pixel in another image, and the size of that, which need not
+// The position of an image's first pixel in another image, and that image's size, which need not
 // contain the image.
 struct Placement {
   int x, y, width, height;
@@ -48,22 +48,22 @@ struct Placement {
 
 // All contents of a file: its channels, interleaved in `image` in the file's order. Colour is
 // associated with alpha (premultiplied, in linear light), however the file stores it. The image is
-// turned as its EXIF orientation says. Of an .exr with several parts it is the one that has the
-// colour (color_channels.h).
+// turned as its EXIF orientation says. From an .exr with several parts, the part that has the
+// colour (color_channels.h) is read.
 struct ImageFile {
   Image image;
   std::vector<std::string> channels;
   Metadata metadata;
-  std::optional<Placement> placement = {};  // in the display window of an .exr, if it is not that
+  std::optional<Placement> placement = {};  // in the display window of an .exr, if it differs
   bool integers = false;  // the file has integers per channel, so no texel is above 1
-  int bits = 0;           // of these, 8 or 16
+  int bits = 0;           // of the integers, 8 or 16
   std::string part = {};  // the name of the part that was read, of an .exr with several
   std::optional<Chromaticities> primaries = {};  // of the colour, if these are not Rec. 709's
   std::optional<Transfer> transfer = {};         // of Levels, if the file states one
-  Messages messages = {};  // what was chosen, or was not understood; each "FILE: ..."
+  Messages messages = {};  // choices, and contents not understood; each "FILE: ..."
 };
 
-// The attributes alone, of an .exr.
+// Only the attributes of an .exr.
 Metadata readExrMetadata(const std::filesystem::path& path);
 
 ImageFile readImageFile(const std::filesystem::path& path,
@@ -91,24 +91,24 @@ Image colorOf(ImageFile&& file, const std::filesystem::path& path);
 Image readImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb,
                 Messages* messages = nullptr);  // gets the file's
 
-// As colorOf(), not converted: the channels of a sensor, for example.
+// The same as colorOf(), but not converted: the channels of a sensor, for example.
 struct StoredColor {
   Image image;
   std::optional<Chromaticities> primaries;  // nullopt: Rec. 709's, or grey
 };
 StoredColor storedColorOf(ImageFile&& file, const std::filesystem::path& path);
 
-// Also with alpha as a fourth channel, if the file has R, G, B and A.
+// The same as colorOf(), with alpha as a fourth channel if the file has R, G, B and A.
 Image colorAndAlphaOf(ImageFile&& file, const std::filesystem::path& path);
 
-// As colorOf(), of a file that is no light: its only channel counts whatever its name.
+// The same as colorOf(), for a file that is no light: its only channel counts whatever its name.
 Image maskOf(ImageFile&& file, const std::filesystem::path& path);
 
-// As findLayer(), in the display window of the file, which was read from `path`.
+// The same as findLayer(), in the display window of the file, which was read from `path`.
 std::optional<Image> layerOf(const ImageFile& file, const std::string& name,
                              const std::filesystem::path& path);
 
-// Without the display window: the texels that the file has.
+// The same as colorOf(), without the display window: only the texels that the file has.
 Image colorOfData(ImageFile&& file, const std::filesystem::path& path);
 Image colorAndAlphaOfData(ImageFile&& file, const std::filesystem::path& path);
 

@@ -27,7 +27,7 @@ struct StoredImage {
 };
 
 // The tiles that a thread has read last: a look-up in the cache locks, and takes as long as ten
-// texels. Tiles have fixed places, by which 8 x 8 neighbours never displace one another.
+// texels. Tiles have fixed places, so that 8 x 8 neighbours never displace one another.
 class RecentTiles {
  public:
   static constexpr int kSide = 8, kCount = kSide * kSide;
@@ -72,8 +72,8 @@ uint64_t nextId() {
   return ++last;
 }
 
-// The tiles that this thread has of the file that it read last: the look-up of a thread's own value
-// would take longer than that of a texel.
+// This thread's tiles of the file that it read last: looking up a thread's own value would take
+// longer than looking up a texel.
 struct LastUsed {
   uint64_t file = 0;
   RecentTiles* tiles = nullptr;

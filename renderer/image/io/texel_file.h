@@ -24,8 +24,8 @@ class TexelFile {
  public:
   using Texel8 = std::array<uint8_t, 4>;
 
-  // The cache holds `cacheBytes` of tiles, and never less than kMinCacheBytes. Besides, each thread
-  // that reads holds on to at most kBytesPerThread. Throws RunError if the file cannot be created.
+  // The cache holds `cacheBytes` of tiles, and never less than kMinCacheBytes. In addition, each
+  // reading thread holds at most kBytesPerThread. Throws RunError if the file cannot be created.
   explicit TexelFile(size_t cacheBytes);
   ~TexelFile();
   TexelFile(const TexelFile&) = delete;
@@ -33,8 +33,8 @@ class TexelFile {
 
   static constexpr size_t kMinCacheBytes = 10 << 20, kBytesPerThread = 1 << 20;
 
-  // Appends an image of width x height texels; returns its index. Not while texels are read. Throws
-  // RunError if the file cannot be written.
+  // Appends an image of width x height texels; returns its index. Not to be called while texels are
+  // read. Throws RunError if the file cannot be written.
   int add(int width, int height, const std::vector<Texel8>& texels);
   int add(int width, int height, const std::vector<vec4>& texels);
 
@@ -60,7 +60,7 @@ class TexelFile {
   std::unique_ptr<State> state_;
 };
 
-// A temporary file of tiles, of which a limited number is kept in memory.
+// A temporary file of tiles; a limited number of them is kept in memory.
 
 inline constexpr int kTileBytes = 1 << 14;
 
@@ -72,8 +72,8 @@ class TileCache {
  public:
   using Tile = std::shared_ptr<const TileContents>;
 
-  // `bytes`: of tiles in memory; who holds a tile keeps it beyond that. Throws RunError if the file
-  // cannot be created.
+  // `bytes`: the limit for tiles in memory; a tile in use stays beyond that. Throws RunError if the
+  // file cannot be created.
   explicit TileCache(size_t bytes);
   ~TileCache();
   TileCache(const TileCache&) = delete;

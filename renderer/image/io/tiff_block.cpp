@@ -27,7 +27,7 @@ enum TiffType : uint16_t {
   kIfd8 = 18
 };
 
-// Of an unsigned integer; 0: another type.
+// The size of an unsigned integer type; 0 for another type.
 uint64_t integerBytes(uint64_t type) {
   switch (type) {
     case kShort:
@@ -57,7 +57,7 @@ uint64_t TiffBlock::number(uint64_t at, uint64_t count) const {
   return result;
 }
 
-// No more than the file can have.
+// The number of entries, no more than the file can have.
 uint64_t TiffBlock::entriesOf(uint64_t directory) const {
   return std::min<uint64_t>(number(directory, countBytes()), bytes_.size() / entryBytes());
 }
@@ -140,8 +140,8 @@ class Inflater {
   ~Inflater() { inflateEnd(&stream_); }
   Inflater(const Inflater&) = delete;
 
-  // Whether the block is undamaged as far as `budget`, a number of bytes, which what it inflates to
-  // reduces.
+  // Whether the block is undamaged, as far as `budget` allows, a number of bytes that is reduced by
+  // the inflated size.
   bool isSound(std::span<const uint8_t> block, double& budget) {
     inflateReset(&stream_);
     stream_.next_in = const_cast<uint8_t*>(block.data());

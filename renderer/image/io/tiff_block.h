@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TIFF 6.0 and BigTIFF, of which an EXIF block is one: directories of tagged entries.
+// TIFF 6.0 and BigTIFF, the format of EXIF blocks too: directories of tagged entries.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace chromeball {
 
-// What the directories say, not the image. Bytes beyond the end read as 0. Offsets are from the
-// begin of the block.
+// The contents of the directories, not of the image. Bytes beyond the end read as 0. Offsets are
+// from the begin of the block.
 class TiffBlock {
  public:
   explicit TiffBlock(std::span<const uint8_t> bytes)
@@ -25,7 +25,7 @@ class TiffBlock {
   // The first value of the entry with this tag, if it is above 0 and finite.
   std::optional<double> find(uint64_t directory, uint16_t tag) const;
 
-  // All values of an entry of rational numbers; empty if there is none. Of 0 / 0 they are NaN.
+  // All values of an entry of rational numbers; empty if there is none. 0 / 0 gives NaN.
   std::vector<double> rationals(uint64_t directory, uint16_t tag) const;
 
   // All values of an entry of unsigned integers, such as offsets; empty if there is none.
@@ -51,10 +51,10 @@ class TiffBlock {
 };
 
 // The checksums of a TIFF's strips and tiles that are compressed by Deflate. libtiff stops at the
-// last texel, before the checksum, and has no function that goes on.
+// last texel, before the checksum, and has no function to continue.
 
 // Inflates the blocks of the first image (RFC 1950). Throws std::runtime_error if one is damaged. A
-// block without its end, as flushed streams are, has no checksum; texels that it lacks are the
+// block without its end, such as a flushed stream, has no checksum; texels that it lacks are the
 // decoder's to find. Takes time in proportion to the file and its image: hostile blocks, which
 // overlap or inflate to more, are left unverified beyond that.
 void checkDeflate(std::span<const uint8_t> tiff);

@@ -30,7 +30,7 @@ enum PictureTag : uint16_t {
   kDngVersion = 50706
 };
 
-// TIFF 6.0 and its technical notes; TIFF/EP and DNG; libtiff's for LogLuv.
+// Numbers of TIFF 6.0 and its technical notes, of TIFF/EP and DNG, and libtiff's for LogLuv.
 enum Photometric {
   kTransparencyMask = 4,
   kCieLab = 8,
@@ -42,7 +42,7 @@ enum Photometric {
   kLinearRaw = 34892
 };
 
-// In the order of the pages, each before those below it.
+// The directories in the order of the pages, each page before those below it.
 std::vector<uint64_t> directoriesOf(const TiffBlock& tiff) {
   constexpr size_t kMost = 256;
   std::vector<uint64_t> found;
@@ -66,7 +66,7 @@ bool isSensorImage(const TiffBlock& tiff, uint64_t directory) {
   return photometric == kColorFilterArray || photometric == kLinearRaw;
 }
 
-// The bits of NewSubfileType; SubfileType is what older files have.
+// The bits of NewSubfileType; older files have SubfileType.
 struct SubfileKind {
   bool isReduced, isMask;
 };
@@ -79,15 +79,15 @@ SubfileKind subfileKindOf(const TiffBlock& tiff, uint64_t directory) {
           (bits & kMaskBit) != 0 || photometricOf(tiff, directory) == kTransparencyMask};
 }
 
-// Canon's CR2 does not say of which kind the sensor's image is. Texels of other files may follow
-// the header, but not with the directory so near.
+// Canon's CR2 does not state the kind of the sensor's image. Texels of other files may follow the
+// header, but not with the directory so near.
 bool isCr2(const TiffBlock& tiff, std::span<const uint8_t> file) {
   constexpr size_t kMarkAt = 8, kDirectoryAt = 16;
   return tiff.firstDirectory() == kDirectoryAt && file.size() > kDirectoryAt &&
          file[kMarkAt] == 'C' && file[kMarkAt + 1] == 'R';
 }
 
-// OpenImageIO leaves what a truncated file lacks black.
+// OpenImageIO leaves the missing part of a truncated file black.
 void checkWhole(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
   for (const auto& [offsetTag, bytesTag] :
        {std::pair(kStripOffsets, kStripLengths), {kTileOffsets, kTileLengths}}) {
@@ -133,8 +133,8 @@ double maxRatioOf(int compression, double width) {
   }
 }
 
-// Refuses what a file of this length cannot hold before it is decoded. Blocks that several strips
-// or tiles share count once. Small images may have any ratio.
+// Refuses an image that a file of this length cannot hold, before it is decoded. Blocks that
+// several strips or tiles share count once. Small images may have any ratio.
 void checkRatio(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
   constexpr double kAlwaysAllowed = 64 << 20;
   const auto number = [&](uint16_t tag) {
@@ -175,7 +175,7 @@ uint64_t pictureDirectory(std::span<const uint8_t> file) {
     throw std::runtime_error(
         "its texels are LogL or LogLuv, of which only 8 bits would be read: convert it to .exr, "
         ".hdr or a .tif of floats");
-  // libtiff takes its white, D50, as that of sRGB, and ICC's numbers as CIE's.
+  // libtiff takes its white, D50, for sRGB's, and ICC's numbers for CIE's.
   if (photometric >= kCieLab && photometric <= kItuLab)
     throw std::runtime_error(
         "its texels are L*a*b*, of which only 8 bits would be read, tinted: "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which image of a TIFF is its picture. A file may hold several: pages, thumbnails, masks, and in
-// directories below those (TIFF Technical Note 1, SubIFDs) the levels of a pyramid or what the
-// sensor of a camera recorded.
+// directories below those (TIFF Technical Note 1, SubIFDs) the levels of a pyramid or the data of a
+// camera's sensor.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,12 @@
 namespace chromeball {
 
 // The offset of the directory of the first image that is neither reduced nor a mask; of the first
-// image if there is no such one. Throws std::runtime_error for files whose picture OpenImageIO does
-// not show: those of cameras, which hold the numbers of a sensor and a thumbnail; masks alone;
-// LogLuv, which it clips to 8 bits; truncated ones, and those
-// too short for what they claim to hold.
+// image if there is none. Throws std::runtime_error for files whose picture OpenImageIO does not
+// show: camera files, which hold the numbers of a sensor and a thumbnail; masks alone; LogLuv,
+// which it clips to 8 bits; truncated files, and files too short for what they claim to hold.
 uint64_t pictureDirectory(std::span<const uint8_t> tiff);
 
-// What a TIFF's first image states of its colours (TIFF 6.0, section 20: WhitePoint and
+// The primaries that a TIFF's first image states (TIFF 6.0, section 20: WhitePoint and
 // PrimaryChromaticities); Rec. 709's for the one that it leaves out, nullopt if it states neither.
 // Throws std::runtime_error if they are not two and six rational numbers.
 std::optional<Chromaticities> tiffPrimaries(std::span<const uint8_t> file);

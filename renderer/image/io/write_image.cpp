@@ -59,7 +59,7 @@ Image repeated(const Image& grey) {
   return color;
 }
 
-// The formats that hold the colour alone.
+// The formats that hold only the colour.
 Messages writeColor(const fs::path& path, const Image& color, const DisplayTransform& transform) {
   if (color.channels < 3) return writeColor(path, repeated(color), transform);
   const std::string kind = extension(path);
@@ -141,7 +141,7 @@ std::optional<Message> uncoveredLight(const std::filesystem::path& path, const I
                   100 * lost / light)};
 }
 
-// What a format cannot hold of the numbers of the colour's channels.
+// The numbers in the colour's channels that a format cannot hold.
 struct NumbersBeyond {
   size_t negative = 0, tooLarge = 0, invalid = 0, count = 0;
   float least = 0, largest = 0;
@@ -163,7 +163,7 @@ struct NumbersBeyond {
   }
 };
 
-// Of a .png what is above white is clipped as any bright surface is.
+// Light above white is not reported for a .png: it is clipped like any bright surface.
 Messages numbersLost(const std::filesystem::path& path, const Image& color, bool isHdr) {
   const NumbersBeyond beyond(color, isHdr ? kMaxRgbe : std::numeric_limits<float>::infinity());
   Messages messages;
@@ -197,8 +197,8 @@ Messages lostLight(const std::filesystem::path& path, const Image& color) {
 
 namespace {
 
-// What libpng's callbacks share. libpng ends by a jump in case of an error, so these have no
-// destructors to run when it jumps.
+// The data that libpng's callbacks share. libpng ends by a jump in case of an error, so these have
+// no destructors to run when it jumps.
 struct PngOutput {
   std::vector<uint8_t>* bytes;
   char error[256];

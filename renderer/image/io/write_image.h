@@ -31,7 +31,7 @@ struct OutputImage {
   std::vector<Layer> layers;
   Metadata metadata;
   std::optional<Placement> placement;   // of an .exr
-  std::function<void(Archive&)> state;  // what else an .exr holds (exr_state.h); may be empty
+  std::function<void(Archive&)> state;  // further contents of an .exr (exr_state.h); may be empty
 };
 
 // Throws InputError unless `path` ends in .exr, .hdr, .pfm or .png.
@@ -50,19 +50,19 @@ Messages writeImage(const std::filesystem::path& path, const OutputImage& output
 // The bytes of that .png. An image of one channel is grey.
 std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform);
 
-// The same of an image that was made of the data of `source`: all formats but .exr get its display
-// window (inDisplayWindow(), read_image.h).
+// The same for an image made from the data of `source`: all formats but .exr get its display window
+// (inDisplayWindow(), read_image.h).
 Messages writeInWindow(const std::filesystem::path& path, OutputImage output,
                        const std::filesystem::path& source, const DisplayTransform& transform = {});
 
-// Writes the colour alone.
+// Writes only the colour.
 Messages writeImage(const std::filesystem::path& path, const Image& color,
                     const DisplayTransform& transform = {});
 
-// What an image file cannot hold of an image.
+// The parts of an image that a file cannot hold.
 
-// Warnings of what writing the colour to `path` loses, each "FILE: ...":
-// - in a .png, light where nothing covers the background, such as a caustic on a shadow catcher:
+// Warnings of losses when the colour is written to `path`, each "FILE: ...": - in a .png, light
+// where nothing covers the background, such as a caustic on a shadow catcher:
 //   associated colour above alpha. A .png has unassociated colour, at most 1, so it holds no more
 //   than alpha. Only where alpha is below one half: the rest is clipped as any bright surface is.
 // - in a .png and an .hdr, negative channels;

@@ -18,7 +18,7 @@ struct DirectionalLight {
 
 using Constellation = std::vector<DirectionalLight>;
 
-// Those of a probe that is turned.
+// The lights of a probe that is turned.
 inline Constellation turned(Constellation lights, const Rotation& rotation) {
   for (DirectionalLight& light : lights) light.direction = rotation(light.direction);
   return lights;
@@ -40,8 +40,8 @@ struct MapLine {
   glm::dvec2 from, to;
 };
 
-// What each light of a constellation stands for: regions of the map, or the tiling whose corners
-// are lights.
+// The part of the map that each light of a constellation stands for: regions, or the tiling whose
+// corners are lights.
 struct LightRegions {
   Partition partition;
   std::vector<MapLine> tiling;

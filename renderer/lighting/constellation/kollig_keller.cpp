@@ -92,7 +92,7 @@ namespace {
 constexpr int kStarts = 4;
 
 // `count` different lit cells, drawn without replacement with probability proportional to weight:
-// those with the smallest -log(u) / weight (Efraimidis and Spirakis 2006).
+// the cells with the smallest -log(u) / weight (Efraimidis and Spirakis 2006).
 std::vector<int> drawCells(const SphericalKMeans& kMeans, int count, uint64_t key) {
   std::vector<double> order(kMeans.litCells());
   for (int i = 0; i < kMeans.litCells(); ++i)

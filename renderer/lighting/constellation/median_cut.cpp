@@ -63,7 +63,7 @@ Partition medianCutPartition(const Image& latLong, int count) {
 
 namespace {
 
-// Indices of the regions, those of high energy first.
+// Indices of the regions, in order of descending energy.
 std::vector<int> byEnergy(const RegionTable& table, const std::vector<Region>& regions) {
   std::vector<double> energy;
   for (const Region& r : regions) energy.push_back(table.moment(r).w);

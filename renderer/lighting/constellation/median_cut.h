@@ -32,7 +32,7 @@ struct LevelCut {
   RegionMeasure measure = RegionMeasure::SolidAngle;
   LightPlace place = LightPlace::Centroid;
   int levels = std::numeric_limits<int>::max();  // maximum
-  int count = 64;                                // of regions, maximum; those of the last level
+  int count = 64;                                // of regions, maximum; on the last level those
                                                  // with the highest energy are cut
 };
 

@@ -42,7 +42,7 @@ double obtuseFromObtuse(double code, int which) {
   return (2 * kPhi - 3) + (code + which) * (2 - kPhi);
 }
 
-// Cuts side ab, and bc of an obtuse triangle, in the golden ratio. Two triangles share the new
+// Cuts side ab, and side bc of an obtuse triangle, in the golden ratio. Two triangles share the new
 // corner on a side; only one of them adds it. The neighbour across bc is the mirror image; the
 // neighbour across ab is the mirror image, or the other shape with the same `mirrored`.
 template <class AddTriangle, class AddCorner>

@@ -71,8 +71,8 @@ struct Region {
   int x0, y0, x1, y1;
 };
 
-// What the weight of a cell, and the size of a region, are measured by: solid angles on the sphere,
-// or areas in the map, as if it were a flat picture.
+// The measure of a cell's weight and of a region's size: solid angles on the sphere, or areas in
+// the map, as if it were a flat picture.
 enum class RegionMeasure { SolidAngle, MapArea };
 
 // Where the light of a region is: at the energy centroid of its directions, or at the direction

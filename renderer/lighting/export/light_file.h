@@ -45,7 +45,7 @@ LightFormat lightFormat(const std::filesystem::path& path, std::string_view name
 //   OpenGl  a C header (light_file.h)
 void writeLights(const std::filesystem::path& path, const LightRig& rig, LightFormat format);
 
-// In the format of the extension. Throws InputError for another extension.
+// Writes the lights in the format of the extension. Throws InputError for another extension.
 void writeLights(const std::filesystem::path& path, const LightRig& rig);
 
 // Directional lights as a C header for OpenGL's fixed-function lighting.

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr size_t kMaxLights = 100000, kMaxMegabytes = 100;
 
-// One light, or the list itself, for errors that name it.
+// One light, or the list itself, with its name for errors.
 class Reader {
  public:
   Reader(const json& object, std::string where) : object_(object), where_(std::move(where)) {

@@ -51,7 +51,7 @@ void addOutlines(Lines& lines, const Image& latLong, const Partition& partition)
         lines[size_t(y) * kWidth + size_t(x)] = true;
 }
 
-// Where the line is inside the image.
+// Adds the parts of the line that are inside the image.
 void addLine(Lines& lines, const MapLine& line) {
   const dvec2 size(kWidth, kHeight), from = line.from * size, to = line.to * size;
   const dvec2 length = abs(to - from);

@@ -28,18 +28,17 @@ struct IrradianceSpheres {
   std::optional<Rgb> ambient;  // radiance from all directions, part of `lights`
 };
 
-// What the difference is multiplied by in the picture: the power of two, from 1 to 1024, at which
-// it is as large as can be shown.
+// The factor of the difference in the picture: the power of two, from 1 to 1024, that makes it as
+// large as can be shown.
 double differenceGain(const IrradianceSpheres& spheres);
 
 // White Lambertian spheres in display-linear colours (Madsen et al. 2003, Figs. 2, 3 and 5 to 7;
-// Madsen and Laursen 2007, Fig. 2): from left to right in the light of the probe (radiance E / pi),
-// in that of the lights, and their difference. Above from the front, looking along -Z; below from
-// the back. Faces are flat. All have one exposure, which makes the brightest channel of any face
-// white; the difference is multiplied by differenceGain() too. In it, middle grey (sRGB 0.5) is 0;
-// a positive difference d, lights - probe, adds half of d's sRGB code value to the code value, a
-// negative one subtracts it. A square on the right has the colour of the ambient light, if there is
-// any.
+// Madsen and Laursen 2007, Fig. 2): from left to right lit by the probe (radiance E / pi), lit by
+// the lights, and their difference. Above from the front, looking along -Z; below from the back.
+// Faces are flat. All have one exposure, which makes the brightest channel of any face white; the
+// difference is multiplied by differenceGain() too. In it, middle grey (sRGB 0.5) is 0; a positive
+// difference d, lights - probe, adds half of d's sRGB code value to the code value, a negative one
+// subtracts it. A square on the right has the colour of the ambient light, if there is any.
 Image irradianceSpheres(const IrradianceSpheres& spheres);
 
 }  // namespace chromeball

@@ -68,8 +68,8 @@ void solveColors(FittedLights& lights, const RadiancePoints& probe, bool ambient
 }
 
 // For lights of unit irradiance: `mixed` has the products of patterns (rows) with derivatives along
-// the tangents, two per light (columns); `both` those of derivatives with each other. The ambient
-// pattern, if any, is the last row of `mixed`, which is zero.
+// the tangents, two per light (columns); `both` the products of derivatives with each other. The
+// ambient pattern, if any, is the last row of `mixed`, which is zero.
 struct DerivativeProducts {
   MatrixXd mixed, both;
 };

@@ -83,7 +83,7 @@ struct CosinePair {
 };
 
 // Unit radiance from all directions gives every surface the irradiance pi. The products of this
-// pattern with that of a light, and with itself.
+// pattern with a light's pattern, and with itself.
 inline constexpr double kAmbientTimesLight = kPiD * kPiD;
 inline constexpr double kAmbientTimesAmbient = 4 * kPiD * kPiD * kPiD;
 

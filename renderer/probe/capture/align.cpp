@@ -44,7 +44,7 @@ std::vector<Candidate> grid() {
   return rotations;
 }
 
-// The best that are further apart than `degrees`, at most `count`, best first.
+// The best rotations that are further apart than `degrees`, at most `count`, best first.
 std::vector<Candidate> distinct(std::vector<Candidate> all, double degrees, size_t count) {
   std::ranges::stable_sort(all, std::greater(), &Candidate::correlation);
   std::vector<Candidate> kept;
@@ -61,7 +61,7 @@ std::vector<Candidate> distinct(std::vector<Candidate> all, double degrees, size
 // The power that is not explained, as a fraction.
 double residual(double correlation) { return 1 - correlation * std::max(correlation, 0.0); }
 
-// That of a map and the same map interpolated twice, turned and turned back.
+// The same for a map and the same map interpolated twice, turned and turned back.
 double interpolationResidual(const Image& map) {
   const Rotation turn = Rotation::ofAngles({50, 40, 30});
   const Probe probe(map, turn);
@@ -74,7 +74,7 @@ double interpolationResidual(const Image& map) {
 
 // Whether a rotation fits as well as the best one: the likelihood ratio test, with as many
 // independent residuals as the sphere has parts in MapPair::standardErrors(). Residuals below
-// `least` say nothing: without interpolation, equal maps have none.
+// `least` carry no information: without interpolation, equal maps have none.
 bool fitsAsWell(const Candidate& candidate, const Candidate& best, double least) {
   constexpr double kResiduals = 80;
   constexpr double kChiSquare = 16.27;  // of three degrees of freedom: exceeded in 0.1% of cases
@@ -83,7 +83,7 @@ bool fitsAsWell(const Candidate& candidate, const Candidate& best, double least)
   return kResiduals * std::log(ratio) <= kChiSquare;
 }
 
-// Refined with these maps; without those that fit worse, best first.
+// The rotations refined with these maps, without the ones that fit worse, best first.
 std::vector<Candidate> refined(const MapPair& maps, std::vector<Candidate> candidates, int height,
                                double leastResidual) {
   parallelFor(size_t(0), candidates.size(), [&](size_t i) {
@@ -108,7 +108,7 @@ std::vector<Candidate> search(const MapPair& maps) {
   return distinct(std::move(candidates), kApart, kCount);
 }
 
-// The axis about which all of several are turned from the first, if there is one.
+// The axis about which all rotations differ from the first, if there is one.
 std::optional<dvec3> commonAxis(const std::vector<Candidate>& candidates) {
   constexpr double kParallel = 0.985;  // cosine of 10 degrees
   if (candidates.size() < 3) return {};
@@ -126,13 +126,13 @@ std::optional<dvec3> commonAxis(const std::vector<Candidate>& candidates) {
 }
 
 void checkVaries(const Image& logMap, std::string_view name) {
-  constexpr float kLeast = 1e-4f;  // of the logarithm: of the radiance as a fraction
+  constexpr float kLeast = 1e-4f;  // a range of logarithms, so a fraction of the radiance
   const auto [least, greatest] = std::ranges::minmax(logMap.texels);
   if (!(greatest - least > kLeast))
     throwInput("{}: has the same radiance in all directions, so no rotation can be found", name);
 }
 
-// Doubled from the coarsest height to that of the coarser map.
+// The heights of the levels: doubled from the coarsest up to the height of the coarser map.
 std::vector<int> heights(const Image& a, const Image& b) {
   const int finest = std::clamp(std::min(a.height, b.height), kCoarsest, kFinest);
   std::vector<int> all;
@@ -192,7 +192,7 @@ Percentiles percentilesShown(const Image& green) {
   return {double(dark) / double(texels.size()), double(shown) / double(texels.size())};
 }
 
-// Of half the size: means of 2 x 2 pixels.
+// The image at half its size: means of 2 x 2 pixels.
 Image halved(const Image& image) {
   Image half(image.width / 2, image.height / 2, 1);
   for (int y = 0; y < half.height; ++y)

@@ -24,7 +24,7 @@ Assembly assemble(const std::vector<CaptureView>& views, const ImageSize& size);
 // of at most 8192 rows.
 ImageSize assemblySize(const std::vector<CaptureView>& views);
 
-// What the texels without coverage get.
+// The fill of texels without coverage.
 struct BlindFill {
   bool isSmooth = false;     // the others, continued
   Rgb color{0};              // else this

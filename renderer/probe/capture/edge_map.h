@@ -8,11 +8,11 @@
 
 namespace chromeball {
 
-// One channel: each pixel is the mean luminance of `scale` x `scale` pixels of the image; what is
-// left over on the right and below is left out.
+// One channel: each pixel is the mean luminance of `scale` x `scale` pixels of the image; pixels
+// left over on the right and below are left out.
 Image meanLuminance(const Image& image, int scale);
 
-// Its natural logarithm, above 1/1000 of the mean over the image.
+// The natural logarithm of the luminance, which is raised to at least 1/1000 of its mean.
 Image logarithm(Image luminance);
 
 // Bilinear interpolation of one channel, continued beyond the rim.

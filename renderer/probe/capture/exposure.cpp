@@ -80,7 +80,7 @@ namespace {
 
 constexpr size_t kMinPixels = 20;
 
-// The exposures of white at which pixels are compared.
+// Pixels are compared between these exposures, as fractions of white's.
 constexpr double kDarkest = 0.01, kBrightest = 0.85;
 
 // The median of found / given.
@@ -187,7 +187,7 @@ class PixelEquations {
   double weight_ = 0;
 };
 
-// g of one channel.
+// The curve g of one channel.
 std::vector<double> solveChannel(std::span<const Exposure> exposures, int channel,
                                  double smoothness) {
   PixelEquations pixels(exposures, channel);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photographs of one view that differ in exposure, and what the camera's settings say about it.
+// Photographs of one view that differ in exposure, and the exposures by the camera's settings.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct CameraSettings {
   std::optional<double> iso;
 };
 
-// Exposures at aperture `from` receive `ratio` times the light of those at aperture `to`, as
+// Exposures at aperture `from` receive `ratio` times the light of exposures at aperture `to`, as
 // measured. By the f-numbers alone it would be (to / from)^2, which lenses miss by several percent
 // (HDRI book, section 9.3.5: 16.63 for f/4 to f/16).
 struct ApertureRatio {
@@ -40,20 +40,20 @@ struct Exposure {
   std::string name;                  // for messages
   Image levels;                      // as encoded; three channels; 1 is white
   dvec3 factor;                      // for each channel, above 0
-  const Image* flatField = nullptr;  // by which to divide its exposure; three channels, above 0
+  const Image* flatField = nullptr;  // its exposure is divided by this; three channels, above 0
 };
 
-// Levels from kSaturated on tell only that the exposure is at least that of kSaturated: JPEG blurs
+// Levels from kSaturated on are only a lower bound on the exposure, kSaturated's: JPEG blurs
 // clipped regions by some levels.
 inline constexpr float kSaturated = 250 / 255.f;
 
-// The hat of Debevec and Malik, 1 in the middle; 0 for levels that tell nothing: saturated, black
+// The hat of Debevec and Malik, 1 in the middle; 0 for levels without information: saturated, black
 // or NaN.
 inline float hatWeight(float level) {
   return level > 0 && level < kSaturated ? 2 * std::min(level, 1 - level) : 0;
 }
 
-// The step, of rows and columns, at which at most about a million pixels are left: enough for
+// The step between rows and between columns that leaves at most about a million pixels: enough for
 // statistics of an image.
 int sampleStep(const Image& image);
 
@@ -62,8 +62,8 @@ int sampleStep(const Image& image);
 struct ExposureAgreement {
   size_t longer, shorter;  // two exposures, by index
   double factor;           // of their green channels' exposures, as given
-  // What was found instead, over what was given: the median over pixels for each channel; NaN for a
-  // channel without enough pixels that both exposures show well.
+  // The ratio of the exposure found to the given one: the median over pixels for each channel; NaN
+  // for a channel without enough pixels that both exposures show well.
   dvec3 found;
   size_t pixels = 0;  // in the channel that has the fewest
 
@@ -71,24 +71,24 @@ struct ExposureAgreement {
   std::optional<double> error() const;
 };
 
-// For each exposure but the longest, with the next longer one. Pixels are compared where, by the
-// longer one, it has at most 85% and the shorter one at least 1% of the exposure of white: a choice
-// by the shorter one would prefer those that noise brightens.
+// The agreement of each exposure but the longest with the next longer one. Pixels are compared
+// where, by the longer one, it has at most 85% and the shorter one at least 1% of the exposure of
+// white: a choice by the shorter one would prefer pixels that noise brightens.
 std::vector<ExposureAgreement> exposureAgreement(std::span<const Exposure> exposures,
                                                  const ResponseCurve& response);
 
 // A camera's response from photographs of one view that differ in exposure.
 
-// Debevec and Malik (1997), eq. 3: the curve g, one for each channel, for which the exposures of a
-// pixel agree best, in the sense of least squares, weighted by a hat; with `smoothness` times g''
-// squared. Where the paper chooses pixels, about a million are used here, so their data count as if
-// there was one pixel for each of the 256 levels. g is fixed at level 128, where it is that of sRGB
-// in all channels: the scale of each channel cannot be determined.
+// Debevec and Malik (1997), eq. 3: the curve g, one for each channel, that minimises the squared
+// differences of a pixel's exposures, weighted by a hat, plus `smoothness` times g'' squared. Where
+// the paper chooses pixels, about a million are used here, so their data count as if there was one
+// pixel for each of the 256 levels. g is fixed at level 128, to sRGB's value in all channels: the
+// scale of each channel cannot be determined.
 //
-// Where all exposures differ by powers of one ratio, as brackets do, ln L may also be changed by
-// any function that repeats itself with that ratio: only smoothness decides. With 20, the responses
-// of cameras (sRGB, powers, S-shaped) are found within a level from 8-bit photographs with a noise
-// of 1.5 levels; that of linear 8-bit files only from irregular exposures.
+// Where all exposures differ by powers of one ratio, as brackets do, ln L is only known up to any
+// function that repeats itself with that ratio: only smoothness decides. With 20, the responses of
+// cameras (sRGB, powers, S-shaped) are found within a level from 8-bit photographs with a noise of
+// 1.5 levels; the response of linear 8-bit files is found only from irregular exposures.
 //
 // The levels are multiples of 1/255. Throws InputError if no level is well exposed in two images of
 // different exposure, and if the curve that fits best is not increasing.

@@ -18,17 +18,18 @@ constexpr double kAligned = 0.95;      // cosine between an edge's normal and th
 constexpr double kLeastRadius = 0.05;  // over the shorter side
 constexpr double kLeastSupport = 0.5;
 constexpr double kLeastInside = 0.5;  // of the outline
-// Of the final fit: places without a ball have at most 0.55 of a circle on edges, and a third of
-// its arcs agree; in pixels; and of the arcs that agree: balls have at most 0.61,
-// octagons whose sides are not shorter than 50 pixels 1 and more.
+// Limits for the final fit. Agreement: places without a ball have at most 0.55 of a circle on
+// edges, and a third of its arcs agree. Error: in pixels. Contradiction, relative to the arcs that
+// agree: balls have at most 0.61, octagons whose sides are not shorter than 50 pixels have 1 and
+// more.
 constexpr double kLeastAgreement = 0.95, kLargestError = 1, kMostContradiction = 0.75;
 
-// Of the deviations that repeat around the outline: those of balls have at most a third of the mean
-// square, those of dodecagons 0.4 to 0.98, of more than half a pixel.
+// Limits for the deviations that repeat around the outline: for balls they are at most a third of
+// the mean square, for dodecagons 0.4 to 0.98 of it, and more than half a pixel.
 constexpr double kMostRipple = 0.5, kMostRippleShare = 0.38;
 
-// What a circle has on edges. Its rank is the length of the outline on edges beyond what random
-// edges would give.
+// The part of a circle that lies on edges. Its rank is the length of the outline on edges beyond
+// what random edges would give.
 struct Support {
   double share = 0, inside = 0, rank = 0;
 };
@@ -83,8 +84,8 @@ std::optional<Circle> circleThrough(const EdgePoint& a, const EdgePoint& b) {
   return Circle{centre, 0.5 * (first + second)};
 }
 
-// Least squares of the distances of points from the circle, by Gauss-Newton; the largest of them
-// count less (Tukey's weights at `width`).
+// The least-squares fit of a circle to points, by Gauss-Newton; the largest distances count less
+// (Tukey's weights at `width`).
 Circle fitted(Circle circle, const std::vector<dvec2>& points, double width) {
   for (int step = 0; step < 20; ++step) {
     glm::dmat3 normalMatrix(0);
@@ -108,8 +109,8 @@ Circle fitted(Circle circle, const std::vector<dvec2>& points, double width) {
   return circle;
 }
 
-// Where steps of at least a share of the largest have their outermost maximum, as an index; else
-// that of the largest. Inside the rim of a ball the reflected scene is compressed to strong edges,
+// The index of the outermost maximum among steps of at least a share of the largest; else the index
+// of the largest step. Inside the rim of a ball the reflected scene is compressed to strong edges,
 // and the rim itself may be the weaker step: it is the last one.
 size_t outermostStep(const std::vector<double>& steps) {
   constexpr double kShare = 0.35;
@@ -152,7 +153,7 @@ Circle refined(const Image& channel, Circle circle) {
   return circle;
 }
 
-// Fitted to the edges across it, from those within 4 pixels to those within 1.
+// The circle fitted to the edges across it, first within 4 pixels, finally within 1.
 Circle fittedToEdges(const EdgeMap& edges, Circle circle) {
   for (double reach = 4; reach >= 1; reach *= 0.5) {
     std::vector<dvec2> points;
@@ -215,8 +216,8 @@ std::optional<FoundCircle> best(const EdgeMap& edges) {
 }
 
 // Whether the circle is an edge of the picture, not a contour of a smooth one: along a quarter of
-// its radii at least, the steepest slope at the circle is well above the mean one around it, which
-// it equals where radiance changes smoothly. Balls have more than 3 times that.
+// its radii at least, the steepest slope at the circle is well above the mean slope around it; they
+// are equal where radiance changes smoothly. Balls have more than 3 times that.
 bool isSharp(const Image& channel, const Circle& circle) {
   constexpr int kRadii = 360, kAround = 6;
   constexpr double kLeastRatio = 1.5, kLeastShare = 0.25, kNoSlope = 1e-3;
@@ -241,7 +242,8 @@ bool isSharp(const Image& channel, const Circle& circle) {
   return sharp >= kLeastShare * shown;
 }
 
-// Around the circle that was found: around another one the search ends short of some deviations.
+// Whether the outline is a polygon. To be called with the circle that was found: from another one
+// the search ends short of some deviations.
 bool isPolygon(const Image& image, const Circle& circle) {
   const std::optional<Outline> outline = fitOutline(image, circle);
   return outline && outline->ripple > kMostRipple && outline->rippleShare > kMostRippleShare;

@@ -5,7 +5,7 @@
 namespace chromeball {
 namespace {
 
-// A map of which some texels are known; the others are to be found.
+// A map with some known texels; the others are to be found.
 struct PartialMap {
   int width, height;
   std::vector<dvec3> radiance;
@@ -18,7 +18,8 @@ struct PartialMap {
   double sine(double row) const { return std::sin(kPiD * row / height); }  // at row 0.5: its centre
 };
 
-// Half as wide and high: known where a part is, then the mean of it, weighted by solid angle.
+// The map at half its width and height: a texel is known if a part of it is, and is then the mean
+// of that part, weighted by solid angle.
 PartialMap coarser(const PartialMap& fine) {
   PartialMap coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
   std::vector<double> weights(coarse.radiance.size());

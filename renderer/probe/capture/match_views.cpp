@@ -74,7 +74,8 @@ struct LuminanceMap {
   }
 };
 
-// How well both show a texel, times its solid angle; 0 unless both show it well.
+// The weight of a texel: how well both views show it, times its solid angle; 0 unless both show it
+// well.
 double commonWeight(double a, double b, int row) {
   const double least = std::min(a, b);
   return least < kShownWell ? 0 : least * texelSolidAngle(row, kSize.width, kSize.height);
@@ -93,7 +94,8 @@ struct Correlation {
   }
 };
 
-// Of `reference` and `view` after a turn by `shift` columns: towards the left of the map.
+// The correlation of `reference` and `view` after a turn by `shift` columns, towards the left of
+// the map.
 Correlation correlation(const LuminanceMap& reference, const LuminanceMap& view, int shift) {
   Correlation sum;
   for (int y = 0; y < kSize.height; ++y)

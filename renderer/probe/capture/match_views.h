@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photographs of one place, taken from several sides, brought to one exposure and orientation.
+// Photographs of one place, taken from several sides, matched in exposure and orientation.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ class CaptureView {
     dvec3 radiance;
     double weight;  // 0: the photograph does not show the direction
   };
-  // Of a unit direction in the world.
+  // The sample in a unit direction in the world.
   Sample sample(const dvec3& direction) const;
 
   void setCamera(const CameraPosition& camera);
@@ -30,7 +30,7 @@ class CaptureView {
   // A factor on all radiance.
   void setGain(double gain) { gain_ = gain; }
 
-  // As many pixels as the whole sphere would have.
+  // The number of pixels that the whole sphere would have.
   double pixelsOfSphere() const;
 
  private:
@@ -42,10 +42,10 @@ class CaptureView {
   double gain_ = 1;
 };
 
-// The weighted mean of the views that show a direction.
+// The weighted mean over the views that show a direction.
 CaptureView::Sample merged(const std::vector<CaptureView>& views, const dvec3& direction);
 
-// Of a view to all before it. The first view is the standard.
+// The match of a view with all views before it. The first view is the standard.
 struct ViewMatch {
   double overlap = 0;                    // the share of the sphere that both show well
   double correlation = 0;                // of the logarithms of luminance there, at `turn`

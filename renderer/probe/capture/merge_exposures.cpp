@@ -41,7 +41,7 @@ class Merger {
     return response_.logExposure(channel, level) - std::log(exposure.factor[channel] * flat);
   }
 
-  // The highest of the bounds is that of the shortest exposure.
+  // The highest bound is the shortest exposure's.
   Channel bound(int x, int y, int channel) const {
     Channel bound{Channel::State::Underexposed, 0};
     for (const Exposure& exposure : exposures_)
@@ -56,7 +56,7 @@ class Merger {
   const ResponseCurve& response_;
 };
 
-// Adds those of one row.
+// Adds the counts of one row.
 void count(std::span<const Exposure> exposures, int y, std::vector<MergedExposures::Use>& uses) {
   for (size_t i = 0; i < exposures.size(); ++i)
     for (int x = 0; x < exposures[i].levels.width; ++x) {
@@ -177,7 +177,7 @@ void checkCount(const std::vector<double>& numbers, size_t files, const char* op
                files);
 }
 
-// What one photograph states and another does not makes their ratio unknown.
+// A property that one photograph states and another does not makes their ratio unknown.
 void checkAllOrNone(const std::vector<std::string>& files,
                     const std::vector<CameraSettings>& settings,
                     std::optional<double> CameraSettings::*member, const char* name) {

@@ -28,8 +28,8 @@ struct MergedExposures {
 };
 
 // Debevec and Malik (1997), eq. 6: ln L is the mean of g(level) - ln k over the exposures, weighted
-// by a hat. A channel that is saturated where it is not black is a lower bound: that of the
-// shortest exposure that is saturated. One that is black in all exposures, or NaN, is
+// by a hat. A channel that is saturated in all exposures where it is not black gives a lower bound,
+// from the shortest saturated exposure. A channel that is black in all exposures, or NaN, is
 // under-exposed: 0.
 //
 // All images have the same size; there is at least one. Parallel; the same bits for any number of
@@ -40,7 +40,7 @@ MergedExposures mergeExposures(std::span<const Exposure> exposures, const Respon
 
 struct PhotographLevels {
   std::vector<Image> levels;  // as encoded, divided by `white`; three channels; of one size
-  std::optional<Chromaticities> primaries;  // of these channels; nullopt: Rec. 709's, or grey
+  std::optional<Chromaticities> primaries;  // of the channels; nullopt: Rec. 709's, or grey
   std::optional<Transfer> transfer;         // that the files state
   int bits = 0;                             // of the files' channels; 0: floats
   float white = 1;                          // the texel of the files that is level 1
@@ -49,17 +49,18 @@ struct PhotographLevels {
 };
 
 // `resizes`: photographs of several sizes are crops of one thing, such as a ball, and are resampled
-// to the smallest width and height. `white` is that of float files, which are otherwise white at 1,
-// or at their largest texel if that is higher. Integers are white at 1. Throws InputError if a file
-// is no image, or if sizes, kinds of numbers, primaries or stated transfers differ.
+// to the smallest width and height. `white` is the white level of float files; the default is 1, or
+// their largest texel if that is higher. Integers are white at 1. Throws InputError if a file is no
+// image, or if sizes, kinds of numbers, primaries or stated transfers differ.
 PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
                             bool resizes = false);
 
 // The camera's settings of photographs, from their EXIF blocks or from the user.
 
 // `times` (seconds) and `apertures` (f-numbers), one for each file, replace those of EXIF; either
-// may be empty. If there are times, nothing is read from the files: no ISO either. Otherwise each
-// file must state its time, and all of them or none the aperture and the ISO. Throws InputError.
+// may be empty. If there are times, nothing is read from the files, not even the ISO. Otherwise
+// each file must state its time, and all of them or none the aperture and the ISO. Throws
+// InputError.
 std::vector<CameraSettings> cameraSettings(const std::vector<std::string>& files,
                                            const std::vector<double>& times,
                                            const std::vector<double>& apertures);

@@ -48,7 +48,7 @@ glm::dmat3 toRec709(const std::optional<Chromaticities>& primaries) {
   return primaries ? toRec709(*primaries).value() : glm::dmat3(1);
 }
 
-// The flat fields, each read once, and which of them each photograph is divided by.
+// The flat fields, each read once, and the one that each photograph is divided by.
 class FlatFields {
  public:
   FlatFields(const PhotographSeries& series, const std::vector<CameraSettings>& settings,
@@ -98,7 +98,7 @@ class FlatFields {
   Messages messages_;
 };
 
-// Each exposure with the next longer one.
+// Compares each exposure with the next longer one.
 void checkShifts(std::span<const Exposure> exposures) {
   std::vector<const Exposure*> order;
   for (const Exposure& exposure : exposures) order.push_back(&exposure);
@@ -113,7 +113,7 @@ void checkShifts(std::span<const Exposure> exposures) {
   }
 }
 
-// The files' own, if they state one.
+// The files' own response, if they state one.
 std::string defaultResponse(const PhotographSeries& series, const PhotographLevels& photographs) {
   if (photographs.transfer == Transfer::Other)
     throwInput(
@@ -182,7 +182,7 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   merged.response = responseOf(series, photographs, exposures, merged.responseName);
   merged.image = mergeExposures(exposures, merged.response);
   for (float& texel : merged.image.radiance.texels) texel *= merged.white;  // the files' scale
-  // Last: exposure, saturation and black are those of the files' channels.
+  // Comes last: exposure, saturation and black refer to the files' channels.
   if (photographs.primaries) convertColor(merged.image.radiance, toRec709(photographs.primaries));
   merged.agreements = exposureAgreement(exposures, merged.response);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the files of a series of photographs to an image of high dynamic range.
+// Merges the files of a series of photographs into an image of high dynamic range.
 #pragma once
 
 #include <string>
@@ -30,8 +30,8 @@ struct PhotographSeries {
   };
   std::vector<FlatField> flatFields;
 
-  // linear, srgb, solve (exposure.h) or a file (response_curve.h). Empty: what the files
-  // state, else srgb for 8 bits, else linear.
+  // linear, srgb, solve (exposure.h) or a file (response_curve.h). Empty: the response that the
+  // files state, else srgb for 8 bits, else linear.
   std::string response;
   double smoothness = 20;      // of solve
   std::optional<float> white;  // of float files (merge_exposures.h)
@@ -63,10 +63,10 @@ struct FilterTransmission {
   size_t pixels = 0;
 };
 
-// From linear images of one view with and without the filter (HDRI book, section 9.3.5), of one
-// size, with three channels. Masks (one channel; may be null) are not 0 where radiance is only a
-// bound; these pixels are left out, and those with a channel that is not above 0. Throws InputError
-// if none is left.
+// The filter's transmission, from linear images of one view with and without it (HDRI book, section
+// 9.3.5); both have the same size and three channels. Masks (one channel; may be null) are not 0
+// where radiance is only a bound; these pixels, and pixels with a channel that is not above 0, are
+// left out. Throws InputError if none is left.
 FilterTransmission filterTransmission(const Image& with, const Image* clippedWith,
                                       const Image& without, const Image* clippedWithout);
 

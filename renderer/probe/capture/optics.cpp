@@ -36,7 +36,7 @@ glm::dvec3 BallReflectance::at(double cosIncidence) const {
 
 namespace {
 
-// Shown, but only where no other photograph shows the direction.
+// Used only where no other photograph shows the direction.
 constexpr double kLeastWeight = 1e-3;
 
 double smoothstep(double x) {
@@ -44,7 +44,7 @@ double smoothstep(double x) {
   return t * t * (3 - 2 * t);
 }
 
-// At `radius` from the centre, in the direction of (x, y).
+// The point of the disc at `radius` from the centre, in the direction of (x, y).
 dvec2 onDisc(const dvec3& direction, double radius) {
   const double length = std::hypot(direction.x, direction.y);
   return length > 0 ? radius / length * dvec2(direction) : dvec2(radius, 0);

@@ -23,10 +23,10 @@ double metalFresnel(double cosIncidence, const MetalIndex& index);
 // Reflectance of linear Rec. 709 by a ball.
 class BallReflectance {
  public:
-  // The same at all angles.
+  // The same reflectance at all angles.
   explicit BallReflectance(const glm::dvec3& reflectance = glm::dvec3(1)) : normal_(reflectance) {}
 
-  // Measured at normal incidence, and changing with the angle as a metal's.
+  // A reflectance measured at normal incidence, which changes with the angle like a metal's.
   static BallReflectance ofMetal(const glm::dvec3& normal, const MetalIndex& index);
   // The same by Schlick's approximation (1994), which rises to 1 at the rim: for rendered balls.
   static BallReflectance schlick(const glm::dvec3& normal);
@@ -46,7 +46,7 @@ using glm::dvec3;
 struct DiscPoint {
   dvec2 position;     // x right, y up; the circle has radius 1
   double weight;      // how well it is shown, above 0 to 1: for a mean over several photographs
-  dvec3 reflectance;  // the photograph's radiance over that of the direction
+  dvec3 reflectance;  // the photograph's radiance / the direction's
 };
 
 // Directions are unit, in the camera's frame: x right, y up, z backwards, towards the camera.
@@ -68,7 +68,7 @@ class CaptureOptics {
 class BallOptics : public CaptureOptics {
  public:
   // `distance` is above 1; infinite for a parallel projection. Directions within `cameraDisc`
-  // degrees of the camera, where it and its operator are reflected, are shown worse than by any
+  // degrees of the camera, where it and its operator are reflected, have less weight than in any
   // other photograph.
   BallOptics(double distance, const BallReflectance& reflectance, double cameraDisc);
 

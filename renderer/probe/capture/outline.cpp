@@ -15,7 +15,7 @@ using glm::dvec2;
 using glm::dvec3;
 
 constexpr double kReach = 2.4;       // of the search around the start, in pixels
-constexpr double kOffsetStep = 0.2;  // between the offsets at which arcs are sampled
+constexpr double kOffsetStep = 0.2;  // between the sampled offsets of arcs
 constexpr int kOffsets = 12;         // on each side
 constexpr int kTwelfths = 12;
 
@@ -27,7 +27,7 @@ struct ArcProfile {
   double least;  // minus the logarithm of the largest likelihood
   std::array<double, 2 * kOffsets + 1> doubts;
 
-  // Between the samples by Catmull and Rom's cubic.
+  // Interpolates between the samples by Catmull and Rom's cubic.
   double at(double offset) const {
     const double position = std::clamp(offset / kOffsetStep + kOffsets, 0.0, 2.0 * kOffsets - 1e-9);
     const int i = int(position);
@@ -44,7 +44,7 @@ struct ArcProfile {
 
 using ArcProfiles = std::vector<ArcProfile>;
 
-// Of every `stride`th arc that the picture shows.
+// The profiles of every `stride`th arc that the picture shows.
 ArcProfiles profilesAround(const Image& image, const Circle& circle, const RimModel& model,
                            int stride) {
   constexpr double kArcLength = 10, kLeastShown = 0.8;
@@ -66,11 +66,12 @@ ArcProfiles profilesAround(const Image& image, const Circle& circle, const RimMo
   return profiles;
 }
 
-// What arcs say of a circle that is changed by (x, y, radius), in pixels. The pixels of an arc have
-// no independent errors, since these are those of the model: they count for fewer.
+// How well arcs fit a circle that is changed by (x, y, radius), in pixels. The pixels of an arc
+// have no independent errors, since the errors are the model's: they count as fewer pixels.
 class OutlineDoubt {
  public:
-  // `bound`: of one arc. `withoutTwelfth`: of the outline, -1 for none.
+  // `bound`: the largest doubt of one arc. `withoutTwelfth`: the twelfth of the outline to leave
+  // out, -1 for none.
   OutlineDoubt(const ArcProfiles& profiles, double bound, double pixelsForOne,
                int withoutTwelfth = -1)
       : profiles_(profiles),
@@ -95,7 +96,7 @@ class OutlineDoubt {
     return likeliestNear(dvec3(0), kReach / kHalf, kHalf);
   }
 
-  // From `change` on, by ever smaller steps.
+  // Descends from `change`, by ever smaller steps.
   dvec3 descend(dvec3 change) const {
     constexpr double kLeastStep = 0.01;
     for (double step = 0.1; step > kLeastStep;) {
@@ -139,9 +140,9 @@ double likeliestBlur(const Image& image, const Circle& start) {
   return best;
 }
 
-// The part of the arcs' deviations from a circle that repeats 3 to 24 times around it, as those of
-// a polygon do: its amplitude in pixels, and its share of their mean square. Of arcs whose position
-// is clear.
+// The part of the arcs' deviations from a circle that repeats 3 to 24 times around it, as a
+// polygon's do: its amplitude in pixels, and its share of their mean square. Only arcs whose
+// position is clear count.
 struct Ripple {
   double amplitude = 0, share = 0;
 };

@@ -15,7 +15,7 @@ namespace chromeball {
 
 // A circle in a photograph.
 
-// In pixels, x right and y down from the top left corner of the image; texel (x, y) covers
+// A circle in pixels, x right and y down from the top left corner of the image; texel (x, y) covers
 // [x, x + 1) x [y, y + 1).
 struct Circle {
   glm::dvec2 centre;
@@ -62,14 +62,15 @@ class PhotographDisc {
   const Image& mask_;
 };
 
-// Where a photograph of a ball was taken from.
+// The position from which a photograph of a ball was taken.
 
-// Seen from the ball (or, for a lens, opposite to where it looks), in degrees: azimuth 0 is +Z, 90
-// is +X; elevation 90 is +Y. The camera stands upright: its right is horizontal.
+// The position as seen from the ball (or, for a lens, opposite to where it looks), in degrees:
+// azimuth 0 is +Z, 90 is +X; elevation 90 is +Y. The camera stands upright: its right is
+// horizontal.
 struct CameraPosition {
   double azimuth = 0, elevation = 0;
 
-  // Columns: to the camera's right, up, and from the ball to the camera.
+  // The columns point to the camera's right, up, and from the ball to the camera.
   glm::dmat3 axes() const {
     const double a = azimuth * kPiD / 180, e = elevation * kPiD / 180;
     const glm::dvec3 right(std::cos(a), 0, -std::sin(a));

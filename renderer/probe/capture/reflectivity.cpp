@@ -32,7 +32,7 @@ PatchMean patchMean(const Image& image, const PixelRectangle& r, double saturati
   if (r.width == 1 && r.height == 1)
     throwInput("{}: one pixel has no standard error; give a rectangle of several", location);
   glm::dvec3 sum(0), squares(0);
-  const glm::dvec3 first(image.rgb(r.x, r.y));  // of which the others differ little
+  const glm::dvec3 first(image.rgb(r.x, r.y));  // the others differ little from it
   for (int y = r.y; y < r.y + r.height; ++y)
     for (int x = r.x; x < r.x + r.width; ++x) {
       const Rgb pixel = image.rgb(x, y);

@@ -13,7 +13,7 @@ struct PixelRectangle {
   int x, y, width, height;
 };
 
-// "X,Y,WIDTH,HEIGHT" in whole pixels. Throws InputError, begun by `location`.
+// Parses "X,Y,WIDTH,HEIGHT" in whole pixels. Throws InputError, begun by `location`.
 PixelRectangle parseRectangle(std::string_view text, std::string_view location);
 
 struct PatchMean {

@@ -24,7 +24,7 @@ bool nextLine(std::istream& text, std::string& line) {
   return true;
 }
 
-// "17,0.01,0.02,0.03"
+// A line such as "17,0.01,0.02,0.03".
 bool parseLine(const std::string& line, int level, dvec3& exposure) {
   std::istringstream text(line);
   text.imbue(std::locale::classic());

@@ -9,7 +9,7 @@
 
 namespace chromeball {
 
-// From levels, 0 to 1 = white, to exposure: radiance x exposure time x transmission, in a unit in
+// Maps levels, 0 to 1 = white, to exposure: radiance x exposure time x transmission, in a unit in
 // which sRGB's white is 1.
 class ResponseCurve {
  public:
@@ -22,13 +22,13 @@ class ResponseCurve {
   explicit ResponseCurve(std::vector<dvec3> logExposures)
       : ResponseCurve(Kind::Table, std::move(logExposures)) {}
 
-  // Its logarithm; -infinity where the exposure is 0. `level` is at least 0; above 1 a curve that
-  // is a table stays at its end.
+  // The exposure's logarithm; -infinity where the exposure is 0. `level` is at least 0; above 1 a
+  // curve that is a table stays at its end.
   double logExposure(int channel, double level) const;
 
   // A text file: the header `level,red,green,blue`, then for each of the 256 levels its number, 0
   // to 255, and the exposures (not their logarithms). Lines that begin with # are comments. Reading
-  // throws InputError if that is not so, or an exposure is not above the one before it; writing is
+  // throws InputError for any other file, or an exposure is not above the one before it; writing is
   // atomic and throws RunError.
   static ResponseCurve read(const std::filesystem::path& path);
   void write(const std::filesystem::path& path) const;

@@ -11,8 +11,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-// The functions of the distance d from the outline that the model is made of, as means over a
-// pixel.
+// The model's functions of the distance d from the outline, as means over a pixel.
 struct RimFunctions {
   double outside = 0;  // 1 outside, 0 inside
   double outward = 0;  // d outside
@@ -29,8 +28,8 @@ class PixelMean {
         b_(0.5 * std::max(std::fabs(normal.y), kLeast)),
         blur_(blur) {}
 
-  // Of the pixel with its centre at `distance`. The Gaussian is a sum over nodes 0.75 standard
-  // deviations apart.
+  // The functions at the pixel with its centre at `distance`. The Gaussian is a sum over nodes 0.75
+  // standard deviations apart.
   RimFunctions at(double distance) const {
     RimFunctions mean;
     if (blur_ == 0) {

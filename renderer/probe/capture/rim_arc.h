@@ -13,13 +13,13 @@ namespace chromeball {
 
 // How radiance changes across the outline. At the distance d from it and t along it, in pixels, it
 // is b0 + b1 d + b2 t outside and a0 + a1 s + a2 s^2 + a3 t inside, where s = sqrt(-d): the cosine
-// of the angle of incidence on the ball, and with it what it reflects and its Fresnel reflectance,
-// is a smooth function of s. The reflected scene is compressed towards the rim. A pixel shows the
-// mean over its square, blurred by a Gaussian. (This is the slanted edge of ISO 12233, with a model
-// of what is inside.)
+// of the angle of incidence on the ball, and with it the reflected radiance and the Fresnel
+// reflectance, is a smooth function of s. The reflected scene is compressed towards the rim. A
+// pixel shows the mean over its square, blurred by a Gaussian. (This is the slanted edge of ISO
+// 12233, with a model of the inside.)
 //
 // Every surface reflects all light at grazing angles, where that light comes from just behind the
-// ball: a rim that continues the background so has a0 = b0.
+// ball: so a rim that continues the background has a0 = b0.
 //
 // Errors are normal. Their variances differ on both sides of the outline, so that a pattern behind
 // the ball hides less of a smooth reflection, and reflected lamps less of a smooth background;
@@ -70,7 +70,7 @@ class RimEquations {
     }
   }
 
-  // Of the normal equations, by Cholesky's factors, in place; false if they are singular.
+  // Solves the normal equations by Cholesky factors, in place; false if they are singular.
   bool solve() {
     constexpr double kSingular = 1e-9;
     for (size_t i = 0; i < unknowns_; ++i) {
@@ -95,7 +95,7 @@ class RimEquations {
     return true;
   }
 
-  // What the solution makes of a row.
+  // The value of the solution for a row.
   glm::dvec3 at(const RimRow& row) const {
     glm::dvec3 sum(0);
     for (size_t i = 0; i < unknowns_; ++i) sum += row[i] * right_[i];

@@ -83,7 +83,7 @@ double MapPair::correlation(const dquat& rotation) const {
   return sum / std::sqrt(powerF_ * powerG_);
 }
 
-// A turn of the map by w moves what was seen at d - w x d to d.
+// A turn of the map by w moves the radiance at d - w x d to d.
 MapPair::Seen MapPair::seenAt(const mat3& back, const vec3& d) const {
   const float step = float(0.5 * texel_);
   Seen seen{dvec3(g_.radiance(back * d)), {}};
@@ -173,7 +173,8 @@ Image resized(const Image& latLong, int height) {
   return convert(latLong, Mapping::LatLong, Mapping::LatLong, {2 * height, height});
 }
 
-// Of one channel, over the sphere; of what is lit if it is 0; 1 if all is black.
+// The median of one channel over the sphere; over its lit part if that median is 0; 1 if all is
+// black.
 float medianOf(const Image& map, int channel) {
   struct Texel {
     float radiance;
@@ -205,7 +206,7 @@ std::vector<float> gaussian(double sigma, int largest) {
   return weights;
 }
 
-// Along the rows by 1 / sin(theta) texels, then along the meridians, over the poles, by one.
+// Blurs along the rows by 1 / sin(theta) texels, then along the meridians, over the poles, by one.
 Image blurred(const Image& map) {
   const int width = map.width, height = map.height;
   Image along(width, height, 3), out(width, height, 3);

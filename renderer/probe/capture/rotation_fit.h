@@ -16,17 +16,18 @@ class MapPair {
  public:
   MapPair(const Image& f, const Image& g);
 
-  // Of f and the rotated g over the sphere, of all channels together; from -1 to 1, and 0 if a map
-  // is 0. The power of g is that of its texels: interpolation has less, which depends on R.
+  // The correlation of f and the rotated g over the sphere, over all channels together; from -1 to
+  // 1, and 0 if a map is 0. The power of g is computed from its texels: an interpolated g has less
+  // power, depending on R.
   double correlation(const glm::dquat& rotation) const;
 
   // The maximum of the correlation next to a rotation, to 1e-3 texels: Gauss-Newton steps, each
   // shortened until the correlation grows.
   glm::dquat refined(glm::dquat rotation) const;
 
-  // Standard errors of a maximum about X, Y and Z, in radians: those that hold for residuals that
-  // depend on each other within each of the 80 faces of an icosphere ("sandwich" estimate; Liang
-  // and Zeger, "Longitudinal Data Analysis Using Generalized Linear Models", 1986).
+  // Standard errors of a maximum about X, Y and Z, in radians: valid for residuals that depend on
+  // each other within each of the 80 faces of an icosphere ("sandwich" estimate; Liang and Zeger,
+  // "Longitudinal Data Analysis Using Generalized Linear Models", 1986).
   glm::dvec3 standardErrors(const glm::dquat& rotation) const;
 
  private:

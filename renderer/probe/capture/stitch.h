@@ -22,13 +22,12 @@ StitchedProbe stitch(const std::vector<Tile>& tiles, const std::vector<double>& 
 // The size of a lat-long map whose texels are no coarser than the pixels in the middle of a tile.
 ImageSize stitchedSize(const std::vector<Tile>& tiles);
 
-// Factors that make the tiles agree where they overlap: the medians of the ratios of luminance of
-// all pairs, in the least-squares sense of their logarithms, weighted by solid angle; their product
-// is 1. Throws InputError if a tile is not connected to the first by overlaps in which both are
-// lit.
+// Factors that make the tiles agree where they overlap: least squares over the logarithms of all
+// pairs' median luminance ratios, weighted by solid angle; their product is 1. Throws InputError if
+// a tile is not connected to the first by overlaps in which both are lit.
 std::vector<double> tileGains(const std::vector<Tile>& tiles);
 
-// What refinePoses() changed.
+// The changes by refinePoses().
 struct PoseRefinement {
   std::vector<double> turns;  // of each tile, degrees
   double before, after;       // RMS of the difference of log radiance in overlaps

@@ -33,7 +33,8 @@ class Blocks {
   int size() const { return size_; }
   int side() const { return int(std::ceil((2 * ball_.circle.radius + 1) / size_)); }
 
-  // nullopt unless all of it is inside the circle and counts. Adds its invalid pixels to `invalid`.
+  // nullopt unless all of the block is inside the circle and counts. Adds its invalid pixels to
+  // `invalid`.
   std::optional<BallSample> sample(int x, int y, size_t& invalid) const {
     const dvec2 corner(left_ + x * size_, top_ + y * size_);
     for (int i = 0; i < 4; ++i)
@@ -100,7 +101,7 @@ BallSamples sampleBall(const DiffuseBall& ball, const Image& photograph, const I
 
 namespace {
 
-// Of a white ball in the light of the probe, at each sample.
+// The radiance of a white ball in the light of the probe, at each sample.
 std::vector<dvec3> radianceOf(const Image& probe, const BallSamples& ball) {
   std::vector<vec3> normals;
   normals.reserve(ball.samples.size());

@@ -53,8 +53,8 @@ struct SunFromBall {
   Sun sun;
   dvec3 alpha;  // of each channel: the sun's irradiance / pi
 
-  // Root mean square over pixels and channels, over the mean, of what the ball shows without the
-  // light of the probe; and of the residual, what it shows without that of the sun either.
+  // Root mean square over pixels and channels, relative to the mean, of what the ball shows without
+  // the light of the probe; and of the residual, without the light of the sun either.
   double rmsOfProbe, rms;
   double explained;  // the fraction of the pixels whose residual is within 2% of the mean
   Image residual;    // signed, of a white ball; black outside; a pixel for each block
@@ -66,17 +66,17 @@ struct SunFromBall {
 inline constexpr double kExplained = 0.02;
 
 // HDRI book, section 9.3.5: the ball's white radiance minus irradiance / pi of the clipped probe,
-// exact at each normal, is the sun's alone: alpha times that of a sun of irradiance pi, in the mean
-// over the samples. For a whole orthographic ball whose camera is at the angle g from the sun, the
-// mean of the latter is 2/(3 pi) (sin g + (pi - g) cos g).
+// exact at each normal, is due to the sun alone: on average over the samples, alpha times the
+// radiance due to a sun of irradiance pi. For a whole orthographic ball whose camera is at the
+// angle g from the sun, the mean of the latter is 2/(3 pi) (sin g + (pi - g) cos g).
 //
 // `clipped` is lat-long, finite and not negative; `direction` is unit; `angle` is the diameter of
 // the sun in degrees. Throws InputError if the sun lights hardly any of the samples, and if the
-// ball is darker than the probe alone would make it.
+// ball is darker than it would be under the probe alone.
 SunFromBall solveSun(const Image& clipped, const BallSamples& ball, const dvec3& direction,
                      double angle);
 
-// Where the sun is in a probe whose photographs it saturated.
+// The position of the sun in a probe whose photographs it saturated.
 
 // A connected region of texels that are as bright as the probe can show.
 struct ClippedSun {
@@ -90,7 +90,7 @@ struct ClippedSun {
 std::optional<Image> loadClippedLayer(const std::filesystem::path& path, const LoadedProbe& probe);
 
 // The largest region of the texels that `clipped` (one channel; null: none) marks with more than
-// 0.5, else of those with at least 0.98 of the largest luminance. `latLong` is finite and not
+// 0.5, else of the texels with at least 0.98 of the largest luminance. `latLong` is finite and not
 // negative. Throws InputError, begun by `name`, if there is none.
 ClippedSun findClippedSun(const Image& latLong, const Image* clipped, const std::string& name);
 

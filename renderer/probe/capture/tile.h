@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A photograph of a part of the surroundings, of which the camera's direction is known.
+// A photograph of a part of the surroundings, with a known camera direction.
 #pragma once
 
 #include <span>
@@ -18,7 +18,7 @@ struct Tile {
   double fov;        // vertical field of view, degrees, above 0 and below 180
 };
 
-// Where a tile's pixels look.
+// The directions that a tile's pixels show.
 class TileView {
  public:
   // `tile` must outlive this.
@@ -28,7 +28,7 @@ class TileView {
     Rgb radiance{0};   // bilinear between the centres of pixels
     float weight = 0;  // cosine window: 1 in the middle, 0 at the edges and outside
   };
-  // For the tile's pose, or another.
+  // What the tile shows in a direction, for its pose or another.
   Seen at(const glm::dvec3& direction) const { return at(direction, pose_); }
   Seen at(const glm::dvec3& direction, const glm::dquat& pose) const;
 
@@ -40,7 +40,7 @@ class TileView {
   double halfWidth_, halfHeight_;  // at distance 1
 };
 
-// Where tiles see the same directions.
+// Directions that two tiles see.
 
 struct Overlap {
   int first, second;  // indices of two tiles
@@ -48,7 +48,7 @@ struct Overlap {
   float weight;  // product of both windows, times the solid angle
 };
 
-// At the texel centres of a lat-long map of this height, row by row.
+// The overlaps at the texel centres of a lat-long map of this height, row by row.
 std::vector<Overlap> overlapsOf(std::span<const TileView> views, int height);
 
 }  // namespace chromeball

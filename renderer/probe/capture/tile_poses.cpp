@@ -30,7 +30,7 @@ float medianLuminance(const std::vector<Tile>& tiles) {
   return middle > 0 ? middle : 1;
 }
 
-// With at most `rows` rows, and log(gain x radiance / unit + 1/20) for radiance.
+// The tiles with at most `rows` rows, and log(gain x radiance / unit + 1/20) for radiance.
 std::vector<Tile> logTiles(const std::vector<Tile>& tiles, const std::vector<double>& gains,
                            float unit, int rows) {
   std::vector<Tile> logs = tiles;
@@ -46,15 +46,16 @@ std::vector<Tile> logTiles(const std::vector<Tile>& tiles, const std::vector<dou
   return logs;
 }
 
-// The difference of two tiles in a direction, and its derivatives by turns of the first about X, Y,
-// Z and by the logarithm of its gain; those of the second are their opposites.
+// The difference of two tiles in a direction, and its derivatives with respect to turns of the
+// first about X, Y, Z and to the logarithm of its gain; the derivatives for the second have the
+// opposite sign.
 struct Difference {
   dvec3 channels{0};
   std::array<dvec3, 3> byTurn{};
   dvec3 byGain{0};
 };
 
-// A turn of the tile by w moves what was seen at d - w x d to d. nullopt next to the tile's edge,
+// A turn of the tile by w moves the radiance at d - w x d to d. nullopt next to the tile's edge,
 // beyond which it shows nothing.
 std::optional<std::array<dvec3, 3>> derivativesOf(const TileView& view, const dvec3& direction) {
   const double step = 0.5 * view.pixelAngle();
@@ -71,8 +72,8 @@ std::optional<std::array<dvec3, 3>> derivativesOf(const TileView& view, const dv
   return derivatives;
 }
 
-// The derivatives are the means of those of both tiles, so that turns of all tiles together change
-// only their differences from the first tile: own derivatives would turn all to where they differ
+// The derivatives are means over both tiles, so that turns of all tiles together change only their
+// differences from the first tile: each tile's own derivatives would turn all to where they differ
 // less by chance. Next to the edge of a tile they are 0, and take no part in the equations.
 std::vector<Difference> differencesAt(const std::vector<TileView>& views,
                                       const std::vector<Overlap>& overlaps) {
@@ -86,7 +87,7 @@ std::vector<Difference> differencesAt(const std::vector<TileView>& views,
     if (!first || !second) return;
     for (size_t axis = 0; axis < 3; ++axis)
       all[i].byTurn[axis] = 0.5 * ((*first)[axis] + (*second)[axis]);
-    // Of log(k x + floor) by log k.
+    // The derivative of log(k x + floor) with respect to log k.
     all[i].byGain = 1.0 - 0.5 * double(kFloor) * (glm::exp(-ofFirst) + glm::exp(-ofSecond));
   });
   return all;
@@ -107,8 +108,8 @@ struct Step {
   double logGain = 0;
 };
 
-// For all tiles; that of the first is 0. Turns and gains together: where one side of an overlap is
-// brighter, a wrong gain looks like a turn.
+// The steps of all tiles; the first tile's step is 0. Solves for turns and gains together: where
+// one side of an overlap is brighter, a wrong gain looks like a turn.
 std::vector<Step> stepsOf(const std::vector<Tile>& tiles, const std::vector<Overlap>& overlaps,
                           const std::vector<Difference>& differences) {
   LeastSquares equations(4 * (int(tiles.size()) - 1));
@@ -137,7 +138,7 @@ std::vector<Step> stepsOf(const std::vector<Tile>& tiles, const std::vector<Over
   return steps;
 }
 
-// Multiplies the radiance of which the image has log(x + floor).
+// Multiplies the radiance of an image that holds log(x + floor).
 void brighten(Image& logs, double logGain) {
   const float gain = float(std::exp(logGain));
   for (float& channel : logs.texels)

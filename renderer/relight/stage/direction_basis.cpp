@@ -44,7 +44,7 @@ namespace {
 
 constexpr int kMaxSubdivisions = 4;  // 5120 faces
 
-// "AxB" or "A"; nullopt unless all of it are such numbers.
+// Parses "AxB" or "A"; nullopt for any other text.
 std::optional<std::vector<int>> numbersIn(std::string_view text) {
   std::vector<int> numbers;
   for (;;) {

@@ -43,7 +43,7 @@ class DirectionBasis {
   // "lat-long:WxH", "cube:N", "icosphere:SUBDIVISIONS", "sh:ORDER". Throws InputError, begun by
   // `location`.
   DirectionBasis(std::string_view name, std::string_view location);
-  // Nearest; at least one unit direction.
+  // The kind Nearest: the Voronoi cells of unit directions, at least one.
   explicit DirectionBasis(std::vector<vec3> directions);
 
   Kind kind() const { return kind_; }

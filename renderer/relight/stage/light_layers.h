@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light groups mixed anew: light is additive, so a picture under other lights is a weighted sum of
+// Mixes light groups anew: light is additive, so a picture under other lights is a weighted sum of
 // its layers (HDRI book, section 9.9.1; Madsen et al. 2003, section 4).
 #pragma once
 
@@ -16,8 +16,8 @@ Image sumOf(std::span<const Image> layers);
 
 Image scaled(Image layer, const Rgb& gain);
 
-// By what factor the picture darkens where the light of one layer is blocked: (whole - layer) /
-// whole, limited to 0..1; 1 where the picture is black.
+// The factor by which the picture darkens where the light of one layer is blocked: (whole - layer)
+// / whole, limited to 0..1; 1 where the picture is black.
 Image shadowMatte(const Image& whole, const Image& layer);
 
 // Pictures lit by another probe from layers of their surfaces: ambient occlusion times diffuse

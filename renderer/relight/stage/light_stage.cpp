@@ -118,7 +118,7 @@ std::vector<std::string> fieldsOf(std::string_view line) {
   return fields;
 }
 
-// Those after the file's name; nullopt unless all are finite numbers.
+// The numbers after the file's name; nullopt unless all are finite numbers.
 std::optional<std::vector<double>> numbersOf(const std::vector<std::string>& fields) {
   std::vector<double> numbers;
   for (size_t i = 1; i < fields.size(); ++i) {
@@ -129,7 +129,7 @@ std::optional<std::vector<double>> numbersOf(const std::vector<std::string>& fie
   return numbers;
 }
 
-// Names of columns: nothing after the first that begins as a number does.
+// Whether the line has names of columns: nothing after the first field begins like a number.
 bool isHeading(const std::vector<std::string>& fields) {
   return std::none_of(fields.begin() + 1, fields.end(), [](const std::string& field) {
     double number = 0;

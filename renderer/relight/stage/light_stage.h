@@ -28,10 +28,10 @@ struct LightStage {
   int height() const { return elements.height; }
 };
 
-// What a file may hold: 256 GiB of float32.
+// The most that a file may hold: 256 GiB of float32.
 inline constexpr uint64_t kMaxStageNumbers = uint64_t(1) << 36;
 
-// A file's numbers for each pixel, at most.
+// The most numbers that a file may have for each pixel.
 int stageChannels(const DirectionBasis& basis);
 
 // Throws InputError, begun by `location`, if a stage of this size exceeds kMaxStageNumbers.
@@ -46,20 +46,20 @@ void checkInMemory(const DirectionBasis& basis, int width, int height, double me
 
 // A probe as weights of a light stage's elements.
 
-// Of cells: the mean radiance of the rotated probe over each. Of spherical harmonics: the integral
-// of radiance times the function. By quadrature over the bilinear interpolation of the map, each
-// point with its exact solid angle, on a grid of at least the map's texels: 4096 x 2048 points or
-// more for cells, so that a cell's edge is off by 0.04 degrees at most. Parallel; the same bits for
-// any number of threads.
+// The probe's weight for each function of the basis. For cells: the mean radiance of the rotated
+// probe over each. For spherical harmonics: the integral of radiance times the function. Computed
+// by quadrature over the bilinear interpolation of the map, each point with its exact solid angle,
+// on a grid of at least the map's texels: 4096 x 2048 points or more for cells, so that a cell's
+// edge is off by 0.04 degrees at most. Parallel; the same bits for any number of threads.
 std::vector<Rgb> lightWeights(const DirectionBasis& basis, const Image& latLong,
                               const Rotation& rotation, int leastWidth = 4096);
 
-// What a pixel reflects of light from each direction, as a picture over the directions (HDRI book,
+// How much light from each direction a pixel reflects, as a picture over the directions (HDRI book,
 // section 9.9.2, Figure 9.45).
 
 // A lat-long map of radiance per irradiance on a surface that faces the light, 1/sr: f cos x
-// visibility, and interreflection. Of boxes one texel for each; of other bases 64 x 32 texels, of
-// which each shows the cell of its centre, or the sum of the harmonics.
+// visibility, and interreflection. For boxes it has one texel each; for other bases 64 x 32 texels,
+// each showing the cell at its centre, or the sum of the harmonics.
 Image reflectanceFunction(const LightStage& stage, int x, int y);
 
 // A light stage from photographs: pictures of a subject under a lamp in each of many directions
@@ -76,11 +76,11 @@ struct StagePhotograph {
 // file or a direction that occurs twice.
 std::vector<StagePhotograph> readPhotographs(const std::filesystem::path& csv);
 
-// Each image shows the subject under distant light that puts `irradiance` on a surface that faces
-// it. It stands for the light of its Voronoi cell on the sphere: the element is the image x the
-// cell's solid angle / irradiance. Images are linear; files with integers are decoded as sRGB.
-// `messages` gets the readers'. Throws InputError for images of different size or with values that
-// are not finite, and if the stage takes more than `memory` bytes.
+// Each image shows the subject under distant light whose irradiance on a surface that faces it is
+// `irradiance`. It stands for the light of its Voronoi cell on the sphere: the element is the image
+// x the cell's solid angle / irradiance. Images are linear; files with integers are decoded as
+// sRGB. `messages` gets the readers'. Throws InputError for images of different size or with values
+// that are not finite, and if the stage takes more than `memory` bytes.
 LightStage stageOf(const std::filesystem::path& folder,
                    const std::vector<StagePhotograph>& photographs, float irradiance, double memory,
                    Messages& messages);

@@ -156,8 +156,8 @@ RelitStage relitStage(StageBands& stage, const std::vector<Rgb>& weights, Religh
   return relit;
 }
 
-// The pictures of all and of what is kept, the scene's own light, and two copies to write; and a
-// histogram for each thread and for all.
+// The pictures from all numbers and from the kept ones, the scene's own light, and two copies to
+// write; and a histogram for each thread and for all.
 double relitStageBytes(int width, int height) {
   return 5. * sizeof(Rgb) * width * height +
          (std::thread::hardware_concurrency() + 2.) * double(Magnitudes::kBytes);

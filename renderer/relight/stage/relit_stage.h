@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A light stage under a probe, of all its numbers or of the largest alone (HDRI book, section
-// 9.9.2).
+// A light stage under a probe, from all its numbers or only the largest (HDRI book, section 9.9.2).
 #pragma once
 
 #include <bit>
@@ -14,8 +13,8 @@
 
 namespace chromeball {
 
-// The sum of a light stage's pictures under a probe, of the pictures themselves or of transformed
-// ones (HDRI book, section 9.9.2, Figure 9.45; Ng et al. 2003).
+// The sum of a light stage's pictures under a probe, from the pictures themselves or from
+// transformed ones (HDRI book, section 9.9.2, Figure 9.45; Ng et al. 2003).
 
 // Transforms over the elements, each orthonormal: they keep the sum of products of two vectors.
 enum class RelightDomain {
@@ -32,7 +31,7 @@ RelightDomain parseDomain(const std::string& name, const DirectionBasis& basis);
 // A pixel's elements, or the weights of a probe, in place.
 void transform(std::span<Rgb> values, const DirectionBasis& basis, RelightDomain domain);
 
-// The numbers of colours: channels alternate.
+// Colours as numbers: channels alternate.
 inline std::span<float> floatsOf(std::vector<Rgb>& colors) {
   return {reinterpret_cast<float*>(colors.data()), 3 * colors.size()};
 }
@@ -49,11 +48,10 @@ Image weightedSum(const Image& elements, std::span<const Rgb> weights);
 // `own`: LightStage::own, which may be empty.
 void addOwnLight(Image& sum, const Image& own);
 
-// Root of the sum of squared differences, divided by that of the squares of `whole`; 0 if that is
-// black.
+// Root of the sum of squared differences over the sum of squares of `whole`; 0 if `whole` is black.
 double relativeDifference(const Image& part, const Image& whole);
 
-// Of the numbers in the domain, those of largest magnitude that are kept.
+// The shares of the numbers in the domain that are kept, those of largest magnitude.
 struct KeptShares {
   double stage = 1, light = 1;  // above 0, up to 1
 
@@ -62,7 +60,8 @@ struct KeptShares {
 
 struct RelitStage {
   Image picture;  // with the scene's own light
-  // Where not all is kept: shares of numbers that are zeros, and relativeDifference() of the sums.
+  // If not all numbers are kept: shares of numbers that are zeros, and relativeDifference() of the
+  // sums.
   double zeros = 0, lightZeros = 0, error = 0;
 };
 
@@ -71,10 +70,10 @@ struct RelitStage {
 RelitStage relitStage(StageBands& stage, const std::vector<Rgb>& weights, RelightDomain domain,
                       const KeptShares& kept);
 
-// What that takes besides the bands, at most, with the picture's file. Bytes.
+// The most memory that this takes besides the bands, with the picture's file, in bytes.
 double relitStageBytes(int width, int height);
 
-// Keeps the numbers of largest magnitude, of more numbers than memory may hold.
+// Keeps the numbers of largest magnitude, out of more numbers than memory may hold.
 
 // A histogram of magnitudes. Bins are 2^-11 wide, relatively: the magnitudes of floats have the
 // order of their bits.
@@ -92,14 +91,15 @@ class Magnitudes {
   }
   void add(const Magnitudes& other);
 
-  // The bin from which on the numbers are together at most `share` of all, and not none.
+  // The lowest bin that, with all bins above it, holds at most `share` of all numbers, but at least
+  // one number.
   size_t leastBin(double share) const;
 
  private:
   std::vector<uint64_t> counts_ = std::vector<uint64_t>(kBins);
 };
 
-// Sets those below this bin to 0. Returns the number of zeros.
+// Sets the numbers below this bin to 0. Returns the number of zeros.
 uint64_t dropBelow(size_t leastBin, std::span<float> values);
 
 // Sets all but the largest magnitudes to 0: about `share` of the values stay. Returns the share of

@@ -38,8 +38,8 @@ class BasisIntegrator : public Integrator {
   BasisIntegrator(const PathTracer& tracer, const LightGroups& groups, int top, LightStage& sums)
       : tracer_(tracer), groups_(groups), top_(top), sums_(sums) {}
 
-  // Integrators with layers have a film with sums in double for each of them, which would be too
-  // long; this writes to sums of its own, at the camera's pixel alone.
+  // Integrators with layers have a film with sums in double for each layer, which would be too
+  // large; this writes to its own sums, only at the camera's pixel.
   Sample sample(const CameraSample& camera, PathContext& context) const override {
     struct Scratch {  // keeps its capacity
       std::vector<DirectedLight> directed;

@@ -19,10 +19,11 @@ struct BasisRender {
   bool interrupted = false;
 };
 
-// The scene is lit from everywhere by radiance 1, as the strategy `uniform` samples it; what a path
-// finds from a direction goes to the elements that are not 0 there. So a stage costs little more
-// than a picture, and takes 12 bytes for each pixel and element. Of the settings, those of light
-// and paths count, with the size, samples and seed; all pixels take the same number of samples.
+// The scene is lit from everywhere by radiance 1, as the strategy `uniform` samples it; the light
+// that a path finds from a direction goes to the elements that are not 0 there. So a stage costs
+// little more than a picture, and takes 12 bytes for each pixel and element. Only the settings of
+// light and paths count, with the size, samples and seed; all pixels take the same number of
+// samples.
 class BasisRenderer {
  public:
   // `world` and `camera` must outlive this.
@@ -32,7 +33,7 @@ class BasisRenderer {
   BasisRenderer& operator=(const BasisRenderer&) = delete;
 
   // `count` rows of the picture from `top` on: the same bits in bands of any height. Ends early,
-  // and says so, if `stop` is set.
+  // and reports that, if `stop` is set.
   BasisRender render(int top, int count, const Progress& progress,
                      const std::atomic<bool>& stop) const;
 

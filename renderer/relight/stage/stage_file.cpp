@@ -70,7 +70,8 @@ Image extract(const Image& all, const std::vector<size_t>& channels) {
   return part;
 }
 
-// The same in place: a pixel's channels move to the front, so that the image never exists twice.
+// Does the same in place: a pixel's channels move to the front, so that the image never exists
+// twice.
 Image extract(Image&& all, const std::vector<size_t>& channels) {
   std::vector<float> pixel(channels.size());
   const size_t pixels = size_t(all.width) * size_t(all.height), stride = size_t(all.channels);

@@ -13,7 +13,7 @@
 
 namespace chromeball {
 
-// Atomic: the file appears with commit(); without, nothing remains.
+// Atomic: the file appears with commit(); without that, nothing remains.
 class StageWriter {
  public:
   // `like`: any band. `halves`: in 16 bits. Throws RunError, as all functions do.
@@ -24,7 +24,7 @@ class StageWriter {
   void write(const LightStage& band, const Image& color);
   void commit() { file_.commit(); }
 
-  // What writing takes besides the band, at most. Bytes.
+  // The most memory that writing takes besides the band, in bytes.
   static double bufferBytes(const DirectionBasis& basis, int width);
 
  private:
@@ -33,8 +33,8 @@ class StageWriter {
 
 class StageReader {
  public:
-  // Colour of other primaries is converted to linear Rec. 709. Throws InputError for a file that is
-  // not a light stage, that lacks elements, or whose data window is not its display window.
+  // Colour with other primaries is converted to linear Rec. 709. Throws InputError for a file that
+  // is not a light stage, that lacks elements, or whose data window is not its display window.
   explicit StageReader(const std::filesystem::path& path);
 
   const DirectionBasis& basis() const { return basis_; }
@@ -45,7 +45,8 @@ class StageReader {
   // `count` rows from `top` on. Throws InputError for values that are not finite.
   LightStage read(int top, int count);
 
-  // What a row takes while it is read, and what reading takes besides, at most. Bytes.
+  // The most memory that a row takes while it is read, and that reading takes in addition, in
+  // bytes.
   double rowBytes() const;
   double bufferBytes() const { return file_.bufferBytes(); }
 
@@ -63,7 +64,7 @@ class StageReader {
 class StageBands {
  public:
   explicit StageBands(LightStage whole);  // one band
-  // Bands of a file that take at most `memory` bytes, with all that reading takes. Throws
+  // Bands of a file that take at most `memory` bytes, including the memory for reading. Throws
   // InputError, begun by `location`, if a row takes more.
   StageBands(StageReader file, double memory, std::string_view location);
 

@@ -16,8 +16,8 @@ using Eigen::MatrixXf;
 using Eigen::VectorXd;
 using Eigen::VectorXf;
 
-// The eigenvectors of the smaller of A A^T and A^T A; the others follow by A. Those whose variance
-// is rounding alone are left out.
+// The eigenvectors of the smaller of A A^T and A^T A; the others follow by A. Vectors whose
+// variance is only rounding are left out.
 MatrixXf principalVectors(const MatrixXd& centred, int most) {
   const bool isWide = centred.cols() > centred.rows();
   const MatrixXd product = normalMatrix(isWide ? MatrixXd(centred.transpose()) : centred);
@@ -29,7 +29,7 @@ MatrixXf principalVectors(const MatrixXd& centred, int most) {
     if (!(eigen.values[i] > least)) break;
     VectorXd vector = eigen.vectors.col(i);
     if (!isWide) vector = (centred * vector).eval();
-    // Against the earlier ones, from which rounding moves those of small variance.
+    // Orthogonalises against the earlier ones: rounding moves vectors of small variance off.
     for (const VectorXd& other : found) vector -= other.dot(vector) * other;
     found.push_back(vector.normalized());
   }
@@ -53,14 +53,14 @@ Affine analysed(const MatrixXf& signals, const std::vector<Eigen::Index>& member
   return {mean.cast<float>(), principalVectors(own, vectors)};
 }
 
-// What is left of a signal: the squared distance from the cluster's affine space.
+// The residual of a signal: its squared distance from the cluster's affine space.
 double residual(const Affine& cluster, const Eigen::Ref<const VectorXf>& signal) {
   const VectorXf centred = signal - cluster.mean;
   const VectorXf weights = cluster.vectors.transpose() * centred;
   return double((centred - cluster.vectors * weights).squaredNorm());
 }
 
-// Signal 0, then by turns the one that is farthest from those before.
+// Signal 0, then repeatedly the signal that is farthest from the earlier ones.
 std::vector<Affine> farApart(const MatrixXf& signals, int count) {
   std::vector<Affine> clusters;
   VectorXf distances = VectorXf::Constant(signals.cols(), INFINITY);
@@ -86,7 +86,7 @@ class Analysis {
     assign();
   }
 
-  // Each signal to the best cluster; on a tie it stays. Returns whether one moved.
+  // Assigns each signal to the best cluster; on a tie it stays. Returns whether one moved.
   bool assign() {
     bool moves = false;
     for (Eigen::Index i = 0; i < signals_.cols(); ++i) {

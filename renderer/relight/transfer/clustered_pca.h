@@ -19,27 +19,27 @@ struct Signals {
   }
 };
 
-// Each signal is about: its cluster's mean + sum over m of weight times vector.
+// Each signal is approximately its cluster's mean + sum over m of weight times vector.
 struct ClusteredPca {
   struct Cluster {
     std::vector<float> mean;
-    Signals vectors;  // orthonormal, largest variance first; m of them at most
+    Signals vectors;  // orthonormal, largest variance first; at most m
   };
   std::vector<Cluster> clusters;
   std::vector<int> clusterOf;               // by signal
   std::vector<std::vector<float>> weights;  // by signal: as many as its cluster's vectors
-  // Root of the sum of squared differences of all signals, over that of the signals' squares.
+  // Root of the sum of squared differences of all signals over the sum of the signals' squares.
   double error = 0;
 
   std::vector<float> signal(size_t i) const;
 };
 
-// `signals`: finite. At most as many clusters as signals are made; a cluster has at
-// most as many vectors as signals and as the signals' length. Starts from signals far from each
-// other, then by turns assigns each signal to the cluster that approximates it best and analyses
-// each cluster anew, for up to `rounds` or until nothing moves: the error never grows. Depends on
-// the arguments alone. Throws std::invalid_argument unless clusters >= 1, vectors >= 0 and there
-// is a signal.
+// `signals`: finite. At most as many clusters as signals are made; a cluster has at most as many
+// vectors as signals and as the signals' length. Starts from signals far from each other, then
+// alternately assigns each signal to the cluster that approximates it best and analyses each
+// cluster anew, for up to `rounds` or until nothing moves: the error never grows. The result
+// depends only on the arguments. Throws std::invalid_argument unless clusters >= 1, vectors >= 0
+// and there is a signal.
 ClusteredPca clusteredPca(const Signals& signals, int clusters, int vectors, int rounds = 12);
 
 }  // namespace chromeball

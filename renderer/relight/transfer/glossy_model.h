@@ -13,7 +13,7 @@
 
 namespace chromeball {
 
-// Transfer matrices of surfaces of any material: from a basis of light to the radiance in each of a
+// Transfer matrices of surfaces of any material, from a basis of light to the radiance in each of a
 // set of directions (Sloan, Kautz and Snyder 2002, section 6; Liu et al. 2004).
 
 // Directions of view above a surface, between which radiance is interpolated.
@@ -31,8 +31,8 @@ class ViewGrid {
     return glm::normalize(vec3(x, y, 1 - std::fabs(x) - std::fabs(y)));
   }
 
-  // Bilinear, with sum 1: of the four nodes about a unit direction; that of one below the horizon
-  // is raised to it.
+  // Bilinear weights, with sum 1, of the four nodes around a unit direction; a direction below the
+  // horizon is raised to it.
   struct Weights {
     std::array<int, 4> nodes;
     std::array<float, 4> weights;
@@ -61,24 +61,24 @@ class ViewGrid {
 };
 
 struct GlossyTransfer {
-  // Of each point: for each node of the grid, the radiance towards it per unit of each function
-  // and, last, what the scene's own lamps and emission make. count is
-  // ViewGrid::kCount (functions + 1).
+  // For each point and each node of the grid, the radiance towards it per unit of each function
+  // and, last, the radiance from the scene's own lamps and emission. The count is ViewGrid::kCount
+  // (functions + 1).
   VertexTransfer matrices;
   std::vector<vec3> normals;  // by point: +z of its grid, in the frame Frame(normal)
 };
 
-// Of the front of each surface, with its own material. `settings.samples`: paths for each node.
-// The rest as estimateTransfer().
+// Estimates the glossy transfer of the front of each surface, with its own material.
+// `settings.samples`: paths for each node. For the rest see estimateTransfer().
 GlossyTransfer estimateGlossyTransfer(const World& world, const std::vector<PlacedMesh>& meshes,
                                       const std::vector<BakePoint>& points, const LightBasis& basis,
                                       const TransferSettings& settings, const Progress& progress);
 
-// Of the points that are not inside a body, in their order: matrices as one signal each.
+// The matrices, one signal each, of the points that are not inside a body, in their order.
 Signals signalsOf(const GlossyTransfer& transfer);
 
 struct GlossyFile {
-  // By instance, with the attributes
+  // The geometry of each instance, with the attributes
   //   _PRT_NORMAL       +z of the vertex's grid
   //   _PRT_0, _PRT_1..  (cluster, weight 0, weight 1), (weight 2, ...): three numbers each, as
   //                     many weights as the most of a cluster, else 0. Cluster -1: inside a body.
@@ -92,9 +92,9 @@ GlossyFile glossyFile(const std::vector<PlacedMesh>& meshes, const std::vector<B
 
 bool isGlossy(const TransferFile& file);
 
-// Radiance towards `eye` (the scene's coordinates) of points of the file's vertices, as lightOf().
-// The light multiplies the clusters' few matrices once; a vertex is a sum of its weights (Sloan et
-// al. 2003, eq. 7).
+// The radiance towards `eye` (in the scene's coordinates) of points of the file's vertices, as in
+// lightOf(). The light multiplies the clusters' few matrices once; a vertex is a sum of its weights
+// (Sloan et al. 2003, eq. 7).
 TransferLight lightTowards(const TransferFile& file, const std::vector<PlacedMesh>& meshes,
                            const std::vector<BakePoint>& points, std::span<const Rgb> light,
                            const glm::dvec3& eye);

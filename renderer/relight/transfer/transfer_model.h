@@ -17,20 +17,19 @@
 
 namespace chromeball {
 
-// Precomputed radiance transfer of diffuse surfaces: what each function of a basis of light makes
-// at points of a scene (Sloan, Kautz and Snyder 2002, section 5; HDRI book, section 9.9.2).
+// Precomputed radiance transfer of diffuse surfaces: the light at points of a scene under each
+// function of a basis of light (Sloan, Kautz and Snyder 2002, section 5; HDRI book, section 9.9.2).
 
-// The functions on the sphere of which the light of transfer is a weighted sum: spherical
-// harmonics, or Haar wavelets on the faces of a cube (HDRI book, section 9.9.2).
+// The functions on the sphere whose weighted sum is the light of transfer: spherical harmonics, or
+// Haar wavelets on the faces of a cube (HDRI book, section 9.9.2).
 
-// What light with coefficients l makes is the sum of l_k t_k, where t_k is what light of the
-// function k alone makes: transfer (Sloan, Kautz and Snyder 2002; Ng, Ramamoorthi and Hanrahan
-// 2003).
+// The result of light with coefficients l is the sum of l_k t_k, where t_k, the transfer, is the
+// result of function k alone (Sloan, Kautz and Snyder 2002; Ng, Ramamoorthi and Hanrahan 2003).
 //
 // sh:ORDER  the real spherical harmonics up to this order; l_k is the integral of radiance x Y_k.
 // haar:N    Haar wavelets of a cube map of N x N cells on each face, face by face. l is the
 //           orthonormal transform (haar.h) of the cells' mean radiances. The transform keeps
-//           scalar products, so t is that of what each cell makes with radiance 1.
+//           scalar products, so t is the transform of each cell's result with radiance 1.
 class LightBasis {
  public:
   static constexpr int kMaxOrder = 6, kMaxCells = 32;
@@ -50,7 +49,7 @@ class LightBasis {
   }
   void transform(std::span<Rgb> sums) const { chromeball::transform(sums, directions_, domain_); }
 
-  // l of a probe that is turned by `rotation`.
+  // The coefficients l of a probe that is turned by `rotation`.
   std::vector<Rgb> project(const Image& latLong, const Rotation& rotation) const;
 
   // The share of a face that a wavelet covers; 1 for harmonics.
@@ -76,7 +75,7 @@ struct TransferSettings {
 struct VertexTransfer {
   size_t count = 0;         // values of each point
   std::vector<Rgb> values;  // point by point
-  // What the scene's own lamps and emitting surfaces make; empty if it has none.
+  // The light of the scene's own lamps and emitting surfaces; empty if it has none.
   std::vector<Rgb> own;
   std::vector<uint8_t> isBuried;  // inside a body (PointLight::isBuried): values are 0
   InvalidSamples invalid;         // at the points' x and y
@@ -87,10 +86,10 @@ struct VertexTransfer {
 };
 
 // Values are irradiance / pi per unit of each function: the radiance of a white Lambertian surface,
-// as light that shines on it, with shadows and light that other surfaces reflect to it. For
+// due to light that shines on it, with shadows and light that other surfaces reflect to it. For
 // harmonics and an open point with normal n, value k is A_l / pi Y_k(n), with the A_l of
-// shIrradiance(), continued to higher bands (Ramamoorthi and Hanrahan 2001, eq. 8). `meshes`:
-// of all instances. The result depends on points, samples and seed only.
+// shIrradiance(), continued to higher bands (Ramamoorthi and Hanrahan 2001, eq. 8). `meshes`: all
+// instances'. The result depends on points, samples and seed only.
 VertexTransfer estimateTransfer(const World& world, const std::vector<PlacedMesh>& meshes,
                                 const std::vector<BakePoint>& points, const LightBasis& basis,
                                 const TransferSettings& settings, const Progress& progress);
@@ -111,7 +110,8 @@ class TransferFile {
   const LightBasis& basis() const { return basis_; }
   const Scene& scene() const { return scene_; }
 
-  // By vertex of the instance's mesh. The second throws InputError where the first has null.
+  // The attribute by vertex of the instance's mesh. The second function throws InputError where the
+  // first returns null.
   const std::vector<vec3>* find(size_t instance, const std::string& name) const;
   const std::vector<vec3>& attribute(size_t instance, const std::string& name) const;
 
@@ -126,9 +126,10 @@ class TransferFile {
   Scene scene_;
 };
 
-// By instance, in the order of vertexPoints(), with the attributes _PRT_0, _PRT_1, ... (values of
-// estimateTransfer(): irradiance / pi per function of the basis, RGB) and _PRT_OWN (light of the
-// scene's own lamps), if there is any. Vertices inside of bodies take the mean of their neighbours.
+// The geometry of each instance, in the order of vertexPoints(), with the attributes _PRT_0,
+// _PRT_1, ... (values of estimateTransfer(): irradiance / pi per function of the basis, RGB) and
+// _PRT_OWN (light of the scene's own lamps), if there is any. Vertices inside of bodies take the
+// mean of their neighbours.
 std::vector<BakedGeometry> transferGeometry(const std::vector<PlacedMesh>& meshes,
                                             const std::vector<BakePoint>& points,
                                             const VertexTransfer& transfer);

@@ -15,7 +15,7 @@ namespace chromeball {
 
 // Paths that look for light of every direction at once.
 
-// A probe whose light no path adds: where a path escapes, the caller decides what it finds.
+// A probe whose light no path adds: the caller decides what an escaping path finds.
 class NoProbe : public LightSource {
  public:
   void sample(const LightPoint&, const PixelSampler&,
@@ -30,7 +30,7 @@ struct EscapingPath {
   Rgb found{0};  // of the scene's own lamps and emission
 };
 
-// Follows a path up to where it ends. `tracer`: of a NoProbe.
+// Follows a path up to where it ends. `tracer`: its lighting is a NoProbe.
 inline EscapingPath follow(const PathTracer& tracer, PathState state, PathContext& context) {
   for (;;) {
     context.sampler.startVertex(state.depth);
@@ -48,7 +48,8 @@ struct TransferWorker {
   std::vector<dvec3> sums;
 };
 
-// The random numbers of all points, and the loop over their samples. `tracer`: of a NoProbe.
+// The random numbers of all points, and the loop over their samples. `tracer`: its lighting is a
+// NoProbe.
 class TransferPoints {
  public:
   TransferPoints(const PathTracer& tracer, const std::vector<PlacedMesh>& meshes,
@@ -60,8 +61,8 @@ class TransferPoints {
         table_(std::bit_ceil(std::clamp(settings.samples, 16u, kMaxTable)),
                dimension::tabulated(settings.maxDepth + 1), settings.seed) {}
 
-  // estimate(point, surface, worker) for each point that is not buried, where it may call
-  // forSamples(); `result` gets the rest.
+  // Calls estimate(point, surface, worker), which may call forSamples(), for each point that is not
+  // buried; `result` gets the rest.
   template <class Estimate>
   void forPoints(VertexTransfer& result, const Progress& progress, const Estimate& estimate) const {
     result.isBuried.assign(points_.size(), 0);
@@ -88,8 +89,8 @@ class TransferPoints {
     workers.forEach([&](const TransferWorker& worker) { result.invalid.add(worker.invalid); });
   }
 
-  // For each sample, with its random numbers set: add(trace()), but for invalid paths. Returns how
-  // many are valid.
+  // Calls add(trace()) for each sample, with its random numbers set, except for invalid paths.
+  // Returns how many are valid.
   template <class Trace, class Add>
   uint32_t forSamples(size_t index, TransferWorker& worker, const Trace& trace,
                       const Add& add) const {

@@ -13,9 +13,9 @@ namespace chromeball {
 // The UV sets that the material's textures and tangents use, ascending.
 std::vector<int> uvSetsOf(const Material& material);
 
-// Throws InputError, begun by `location`, that names the array and the index of what is wrong:
-// vertex arrays of different lengths, numbers that are not finite, colours below 0, triangles of
-// vertices that do not exist, UV sets of the material's textures that are missing.
+// Throws InputError, begun by `location`, that names the array and the index of the error: vertex
+// arrays of different lengths, numbers that are not finite, colours below 0, triangles of vertices
+// that do not exist, UV sets of the material's textures that are missing.
 void checkMesh(const Mesh& mesh, const Material& material, const std::string& location);
 
 // Repairs the normals and tangents of a mesh that checkMesh() accepts, drops vertices that no

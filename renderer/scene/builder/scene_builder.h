@@ -20,7 +20,7 @@ struct TextureSampler {
 
 // Adds to a scene, so that one made of arrays is as sound as one read from a file: values are
 // checked, normals and tangents completed, mip levels made. All functions throw InputError, which
-// names the array or value and the index of what is wrong, and then leave the scene as it was. The
+// names the array or value and the index of the error, and then leave the scene as it was. The
 // numbers that they return are indices into the scene's lists.
 class SceneBuilder {
  public:
@@ -33,18 +33,19 @@ class SceneBuilder {
   // An image of four channels: 8 bits, or floats of any finite value from 0. Textures that differ
   // in their samplers share it.
   int addImage(TexelGrid image);
-  // A slot of a material. `srgb`: whether RGB is encoded in sRGB, as in images of 8 bits of
-  // colours; not those of roughness, normals and other numbers. Makes the mip levels.
+  // A slot of a material. `srgb`: whether RGB is encoded in sRGB, as in images of colours with 8
+  // bits, but not in images of roughness, normals and other numbers. Makes the mip levels.
   TextureSlot addTexture(int image, bool srgb, const TextureSampler& sampler = {});
 
-  // Its slots are those of addTexture(). Numbers are in the ranges of glTF 2.0 and its extensions.
+  // Its texture slots come from addTexture(). Numbers are in the ranges of glTF 2.0 and its
+  // extensions.
   int addMaterial(Material material);
 
   // A mesh for one or several instances, with the arrays that this material needs (mesh.h); other
-  // materials may use it that need no more of them. Without triangles, its vertices are taken in
-  // threes.
+  // materials may use it if they need no further arrays. Without triangles, its vertices are taken
+  // in threes.
   int addMesh(Mesh mesh, int material);
-  // The same of arrays that are complete.
+  // The same for a mesh whose arrays are complete.
   int addMesh(MeshList::Shared mesh);
 
   // Without a transform, the mesh is in world space: rays are faster in one that has no other

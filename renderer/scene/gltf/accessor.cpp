@@ -14,7 +14,7 @@
 namespace chromeball {
 namespace {
 
-// The elements of an accessor, `stride` bytes apart: those of the file, or a copy where some are
+// The elements of an accessor, `stride` bytes apart: in the file's buffer, or in a copy if some are
 // substituted.
 struct Elements {
   size_t count = 0;
@@ -208,7 +208,7 @@ Elements readIndexElements(GltfFile& file, int accessor, const std::string& wher
   return elements;
 }
 
-// Throws for the first invalid index, of which there must be one.
+// Throws for the first invalid index; there must be one.
 [[noreturn]] void failAtIndex(const GltfFile& file, std::span<const uint32_t> indices,
                               uint32_t restart, size_t vertexCount, const std::string& where) {
   const uint32_t index = *std::find_if(

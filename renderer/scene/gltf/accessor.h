@@ -21,7 +21,7 @@ std::vector<glm::vec<N, float>> readVectors(GltfFile& file, int accessor, const 
 std::vector<uint32_t> readIndices(GltfFile& file, int accessor, size_t vertexCount,
                                   const std::string& where);
 
-// The same, three by three; a rest of one or two is left out.
+// The same in groups of three; one or two left over are dropped.
 std::vector<Triangle> readTriangles(GltfFile& file, int accessor, size_t vertexCount,
                                     const std::string& where);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a glTF file of this program carries besides a scene.
+// Data that a glTF file of this program carries besides a scene.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@ namespace chromeball {
 struct CustomData {
   using Arrays = std::map<std::string, std::vector<vec3>>;
 
-  // By node: the attributes of its mesh's only primitive whose names start with the prefix, each of
-  // finite vectors. Nodes whose mesh has several primitives have none.
+  // For each node, the attributes of its mesh's only primitive whose names start with the prefix,
+  // each of finite vectors. Nodes whose mesh has several primitives have none.
   std::map<int, Arrays> attributes;
   Arrays tables;                             // the accessors of extras.chromeball.tables
   std::map<std::string, std::string> texts;  // strings of extras.chromeball

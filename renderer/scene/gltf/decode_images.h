@@ -21,9 +21,9 @@ struct ImageToDecode {
   std::vector<ChainToMake> chains;
 };
 
-// Decodes what is missing, in parallel. If all of it would exceed `cache.memory`, it goes to
-// `cache.file`, one image after another. Throws InputError for a damaged image, and
-// before any is decoded if all exceed `cache.limit`; RunError if the temporary file cannot be
+// Decodes the images that are missing, in parallel. If all together would exceed `cache.memory`,
+// they go to `cache.file`, one after another. Throws InputError for a damaged image, and, before
+// any is decoded, if all together exceed `cache.limit`; RunError if the temporary file cannot be
 // written.
 void decodeImages(const GltfFile& file, const std::vector<ImageToDecode>& images,
                   TexelCache& cache);

@@ -58,8 +58,8 @@ void makeIntegersWhole(json& value) {
   if (x < 0 && x > -kExact && x == std::floor(x)) value = int64_t(x);
 }
 
-// Where the chunk behind one of `size` bytes at `at` begins: after padding to 4 bytes, which some
-// writers leave out.
+// The position of the chunk behind one of `size` bytes at `at`: after padding to 4 bytes, which
+// some writers leave out.
 size_t nextChunk(std::span<const uint8_t> glb, size_t at, size_t size) {
   const size_t unpadded = at + size, padded = at + (size + 3) / 4 * 4;
   const bool isUnpadded = unpadded + 8 <= glb.size() && word(glb, unpadded + 4) == kBinaryChunk;

@@ -96,7 +96,7 @@ class GltfFile {
   std::vector<std::string> files_;
   ExternalFiles external_;
   std::vector<std::string> warnings_;
-  std::set<std::string> known_;  // of them
+  std::set<std::string> known_;  // the warnings, to tell repeated ones
   FileBytes file_;               // includes the GLB's buffer
   std::vector<Bytes> storage_;   // the other buffers
   std::vector<std::span<const uint8_t>> buffers_;

@@ -152,7 +152,7 @@ namespace {
 
 using nlohmann::json;
 
-// Where a value is in the file: a member or an element of its parent.
+// The place of a value in the file: a member or an element of its parent.
 struct JsonPlace {
   const JsonPlace* parent = nullptr;  // null: the file itself
   std::string_view member = {};       // empty: an element of an array

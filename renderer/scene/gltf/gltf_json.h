@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is checked and mended in a glTF file's JSON before tinygltf reads it; the types of its
-// members apart (gltf_json.h).
+// Checks and repairs a glTF file's JSON before tinygltf reads it; for the types of its members see
+// below.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,13 +12,13 @@
 
 namespace chromeball {
 
-// All that throw do so with std::runtime_error, a reason to be preceded by the name of the file.
+// These functions throw std::runtime_error with a reason to be preceded by the name of the file.
 
 // Throws unless the file is glTF 2.0.
 void checkVersion(const nlohmann::json& root);
 
 // Throws for an extension that the file requires and that is not supported, with advice. Returns
-// the extensions that it uses and that are ignored.
+// the extensions that it uses but that are ignored.
 std::set<std::string> checkExtensions(const nlohmann::json& root);
 
 // Throws for skins without joints, which tinygltf rejects without giving a reason.
@@ -45,10 +45,10 @@ std::string stringMember(const nlohmann::json& object, const char* key);
 
 // The types that glTF 2.0 and its extensions give to the members that we read.
 
-// tinygltf takes the default for an optional member of another type than the specification's, and
-// the low bits of a whole number beyond int. Throws std::runtime_error, a reason to be preceded by
-// the name of the file, for the first such member: "nodes[3].mesh: must be a whole number from 0 to
-// 2147483647, not a string". Members that are not read are not looked at. Whole numbers that are
+// tinygltf takes the default for an optional member whose type differs from the specification's,
+// and the low bits of a whole number beyond int. Throws std::runtime_error, a reason to be preceded
+// by the name of the file, for the first such member: "nodes[3].mesh: must be a whole number from 0
+// to 2147483647, not a string". Members that are not read are not looked at. Whole numbers that are
 // written as 1.0 or 1e0, which are valid, become 1.
 void checkMemberTypes(nlohmann::json& root);
 

@@ -24,8 +24,8 @@ namespace {
 using glm::dmat4;
 using glm::dvec3;
 
-// The camera's frame is that of the node, orthonormalised, so that mirroring and scale do not
-// change the view.
+// The camera takes the node's frame, orthonormalised, so that mirroring and scale do not change the
+// view.
 void placeCamera(const dmat4& toWorld, Camera& camera) {
   const dvec3 back = glm::normalize(dvec3(toWorld[2]));
   const dvec3 right = glm::normalize(glm::cross(dvec3(toWorld[1]), back));
@@ -77,7 +77,7 @@ void addMissingNodes(tinygltf::Model& model) {
   for (size_t i = 0; i < model.meshes.size(); ++i) model.nodes.emplace_back().mesh = int(i);
 }
 
-// With its variant; that of an earlier load if the cache keeps files.
+// The file with its variant applied; from an earlier load if the cache keeps files.
 std::shared_ptr<GltfFile> openedFile(const std::string& path, const GltfChoice& choice) {
   const std::string key =
       fmt::format("{}\n{}\n{}", path, choice.animation ? "=" + choice.animation->name : "",

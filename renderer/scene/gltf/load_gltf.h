@@ -44,7 +44,7 @@ struct GltfChoice {
   glm::dvec3 origin{0};  // scene origin in world space, subtracted in double precision
 };
 
-// Whether the file's first bytes are those of a GLB or of a JSON object.
+// Whether the file begins like a GLB or like a JSON object.
 bool beginsAsGltf(const std::string& path);
 
 // Reads the default scene of the file (the first if the file names none) and applies `placement` to

@@ -123,8 +123,8 @@ void MaterialReader::readSpecular(const Value& extension, const std::string& whe
       slot(memberOf(extension, "specularColorTexture"), true, where + ".specularColorTexture");
 }
 
-// The specular colour is F0 itself, as that of an infinite index; its texture's alpha is the
-// glossiness.
+// The specular colour is F0 itself, as with an infinite index of refraction; its texture's alpha is
+// the glossiness.
 void MaterialReader::readSpecularGlossiness(const Value& e, TexelUse diffuse,
                                             const std::string& where, Material& m) {
   m.specularGlossiness = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts glTF materials, textures, samplers and images to those of the scene.
+// Converts glTF materials, textures, samplers and images to the scene's.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ namespace chromeball {
 // Converts on demand, so that unused materials and images cost nothing.
 class MaterialReader {
  public:
-  // `cache` receives what is decoded; null: none.
+  // `cache` receives the decoded images; null: none.
   MaterialReader(GltfFile& file, TexelCache* cache) : file_(file), cache_(cache) {}
 
   // Converts glTF material `index` (-1: the default material); returns its index in the scene.

@@ -14,8 +14,8 @@ namespace {
 
 using tinygltf::Value;
 
-// KHR_meshopt_compression adds a version of the vertex stream and a filter, which are not
-// supported, to what else is EXT_meshopt_compression.
+// KHR_meshopt_compression is EXT_meshopt_compression with an additional version of the vertex
+// stream and a filter, which are not supported.
 constexpr std::array kExtensions = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 // The extension's description of a buffer view.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What several loads of one model share, as for the frames of an animation.
+// Data that several loads of one model share, as for the frames of an animation.
 #pragma once
 
 #include <compare>
@@ -28,7 +28,7 @@ struct TexelCache {
   std::shared_ptr<TexelFile> file;  // null: all are in memory; else it caches the rest of `memory`
 
   std::map<std::pair<std::string, int>, std::shared_ptr<TexelGrid>> grids;  // by file and image
-  // By image, and by Texture::srgb and Texture::weightedByAlpha.
+  // Keyed by image, and by Texture::srgb and Texture::weightedByAlpha.
   std::map<std::tuple<const TexelGrid*, bool, bool>, MipChain> chains;
 };
 
@@ -59,7 +59,7 @@ struct MeshKey {
   auto operator<=>(const MeshKey&) const = default;
 };
 
-// Does not keep meshes: it knows those that some scene has.
+// Does not keep meshes alive: it knows the meshes that some scene has.
 class MeshCache {
  public:
   // Null if no scene has the mesh.
@@ -83,7 +83,7 @@ struct ModelCache {
   MeshCache meshes;
 
   bool keepsFiles = false;  // open and decoded, with their buffers
-  // By path, animation and variant, which change the file's nodes and materials.
+  // Keyed by path, animation and variant, which change the file's nodes and materials.
   std::map<std::string, std::shared_ptr<GltfFile>> files;
 };
 

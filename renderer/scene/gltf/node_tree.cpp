@@ -99,7 +99,7 @@ bool isMarkedHidden(const tinygltf::Node& node) {
   return visible.IsBool() && !visible.Get<bool>();
 }
 
-// Without the nodes that are hidden or have a hidden ancestor. `order`: parents before children.
+// The nodes that neither are hidden nor have a hidden ancestor. `order`: parents before children.
 std::vector<int> visibleNodes(const GltfFile& file, const std::vector<int>& parents,
                               const std::vector<int>& order, const std::vector<int>& inScene) {
   std::vector<bool> hidden(parents.size());

@@ -27,7 +27,8 @@ NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::
 // The meshes, materials and transforms of a glTF file's nodes.
 
 // A scene with the meshes, instances, materials and textures of the visible nodes in the tree.
-// Geometry that several primitives share is stored once. `cache` receives what is read; null: none.
+// Geometry that several primitives share is stored once. `cache` receives the data read; null:
+// none.
 Scene readInstances(GltfFile& file, const NodeTree& tree, ModelCache* cache);
 
 // EXT_mesh_gpu_instancing: a node with several instances of its mesh.

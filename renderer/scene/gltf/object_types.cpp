@@ -7,7 +7,8 @@
 namespace chromeball {
 namespace {
 
-// Of an extension, in all places that it may have.
+// The types of objects and their members; an extension has the members of all places where it may
+// occur.
 constexpr ObjectType kObjects[] = {
     {"File",
      {{"accessors", "Accessor[]"},

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kinds of objects in glTF 2.0 and its extensions, and the types of those of their members that
-// we read.
+// The kinds of objects in glTF 2.0 and its extensions, and the types of the members that we read.
 #pragma once
 
 #include <string_view>

@@ -17,8 +17,8 @@ struct Minimum {
 //   bool residuals(const State&, Eigen::VectorXd&, Eigen::MatrixXd* jacobian) const
 //                                              false outside of its domain; jacobian may be null
 //   State moved(const State&, const Eigen::VectorXd& step) const
-// The Jacobian is that of residuals(moved(state, step)) at the step 0. Stops after `maxSteps`, or
-// when a step changes nothing.
+// The Jacobian is the derivative of residuals(moved(state, step)) at the step 0. Stops after
+// `maxSteps`, or when a step changes nothing.
 template <class Problem>
 Minimum<typename Problem::State> minimise(const Problem& problem, typename Problem::State start,
                                           int maxSteps) {

@@ -22,8 +22,8 @@ struct Row {
   std::string location;
 };
 
-// Without spaces and quotation marks around it; messages quote it, so that other control characters
-// become question marks.
+// The field without surrounding spaces and quotation marks; messages quote it, so control
+// characters become question marks.
 std::string cleaned(std::string_view field) {
   const auto isOuter = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
   while (!field.empty() && isOuter(field.front())) field.remove_prefix(1);
@@ -161,7 +161,7 @@ bool clip(dvec2& from, dvec2& to, const dvec2& min, const dvec2& max) {
 using Corner = std::tuple<float, float, float>;
 Corner cornerAt(const vec3& p) { return {p.x, p.y, p.z}; }
 
-// What is known of an edge while its triangles are visited.
+// The data of an edge while its triangles are visited.
 struct Fold {
   vec3 from, to;
   dvec3 normal;  // of its first triangle

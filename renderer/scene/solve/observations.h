@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What somebody picked in a photograph: points of known positions, and lines along the axes.
+// Observations that somebody picked in a photograph: points of known positions, and lines along the
+// axes.
 //
 // Image positions are in pixels from the photograph's top left corner, x right and y down: pixel
 // (i, j) covers [i, i + 1) x [j, j + 1).
@@ -38,7 +39,7 @@ struct ObservedLine {
 // CSV with a line for each, with or without these names as first line; # begins a comment:
 //   name,x,y,z,px,py
 //   axis,x1,y1,x2,y2,metres       metres may be empty or missing
-// Throws InputError "FILE:LINE: ..." for other columns, for what is not a finite number, and for a
+// Throws InputError "FILE:LINE: ..." for other columns, for a number that is not finite, and for a
 // name that occurs twice.
 std::vector<ObservedPoint> readObservedPoints(const std::filesystem::path& path);
 std::vector<ObservedLine> readObservedLines(const std::filesystem::path& path);
@@ -69,7 +70,7 @@ struct ModelEdge {
 // The borders of a model's surfaces, and the edges at which they bend by more than 30 degrees.
 std::vector<ModelEdge> creases(const Scene& scene);
 
-// What the camera sees of the edges, also of those that surfaces hide.
+// Draws the edges as the camera sees them, including edges that surfaces hide.
 void drawEdges(std::span<const ModelEdge> edges, const Camera& camera, const Rgb& color,
                Image& picture);
 

@@ -69,7 +69,7 @@ PointView PointProblem::moved(const PointView& view, const Eigen::VectorXd& step
   return moved;
 }
 
-// With the rotation given, c weight = zoom q + centre is linear in the other unknowns.
+// For a given rotation, c weight = zoom q + centre is linear in the other unknowns.
 std::optional<PointView> PointProblem::viewWith(const dmat3& rotation) const {
   const Eigen::Index rows = Eigen::Index(2 * points_.size());
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, focalLength_ ? 3 : 4);

@@ -18,7 +18,7 @@ struct CentredPoint {
 // The camera shows the point q = rotation x position (x right, y up, z back) at
 //   c (1 + bend |c|^2)  with  c = (zoom (q.x, q.y) + centre) / (1 - nearness q.z):
 // an affine view (nearness 0) with perspective. Compared with position and focal length f, these
-// values depend little on each other also for distant cameras and flat objects, so that descents
+// values depend little on each other even for distant cameras and flat objects, so that descents
 // from wrong rotations find the way: nearness = 1 / distance, zoom = f / distance, k1 = bend f^2.
 struct PointView {
   glm::dmat3 rotation{1};  // from the scene to the camera

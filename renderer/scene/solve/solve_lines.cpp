@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-// The distances of lines from those to their vanishing points, as a least-squares problem
+// The distances of lines from the lines to their vanishing points, as a least-squares problem
 // (levenberg_marquardt.h).
 struct CentredLine {
   int axis;
@@ -36,12 +36,12 @@ class LineProblem {
 
   int unknowns() const { return findsFocalLength_ ? 4 : 3; }
 
-  // The direction in which the picture of a point at the line's middle moves, if the point moves
-  // along the axis; of any length.
+  // The direction in which the image of a point at the line's middle moves if the point moves along
+  // the axis; of any length.
   static glm::dvec2 flow(const LineView& view, const CentredLine& line);
 
-  // Signed distances of the second ends. The unknowns: rotation about the camera's axes, logarithm
-  // of the focal length.
+  // The residuals are signed distances of the second ends. The unknowns: rotation about the
+  // camera's axes, logarithm of the focal length.
   bool residuals(const LineView& view, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian) const;
   LineView moved(const LineView& view, const Eigen::VectorXd& step) const;
 
@@ -106,8 +106,8 @@ void checkCount(const std::vector<ObservedLine>& lines, const std::string& file)
         file, counts[0], counts[1], counts[2]);
 }
 
-// Turned by half turns about the scene's axes so that lines run along the positive axes: the
-// distances do not tell.
+// The rotation, turned by half turns about the scene's axes so that lines run along the positive
+// axes: the distances do not determine that.
 dmat3 directed(const LineView& view, const std::vector<ObservedLine>& observed,
                const std::vector<CentredLine>& lines, const std::string& file) {
   std::array<std::optional<size_t>, 3> first;  // line of each axis
@@ -152,7 +152,7 @@ FoundByLines search(const std::vector<CentredLine>& lines, const CameraKnowledge
 
 CameraErrors errorsOf(const FoundByLines& found, const CameraKnowledge& known, size_t count,
                       const std::string& file) {
-  constexpr double kLeastPivot = 1e-13, kExtreme = 500;  // kExtreme: of f / h, either way
+  constexpr double kLeastPivot = 1e-13, kExtreme = 500;  // kExtreme: f / h or h / f
   const double f = found.state.focalLength, h = 0.5 * known.size.height;
   const SymmetricEigen eigen = eigenOfSymmetric(found.normal);
   if (!(eigen.values.minCoeff() > kLeastPivot * eigen.values.maxCoeff()) ||
@@ -171,7 +171,7 @@ CameraErrors errorsOf(const FoundByLines& found, const CameraKnowledge& known, s
   return errors;
 }
 
-// Where the ground at y = -1 is seen from the origin in this direction.
+// The point of the ground at y = -1 that is seen from the origin in this direction.
 dvec3 onGround(const dvec3& direction, const std::string& location) {
   if (!(direction.y < -1e-6))
     throwInput("{}: is not below the horizon; it should show a point of the ground, y = 0",
@@ -189,7 +189,7 @@ double alongAxis(const dvec3& from, int axis, const dvec3& direction) {
 
 dvec3 positionOf(const SolvedCamera& camera, const std::vector<ObservedLine>& lines,
                  const LinePlacement& placement, const std::string& file) {
-  // The height that the lines of known length give, by least squares.
+  // The height from the lines of known length, by least squares.
   double product = 0, squares = 0;
   std::optional<dvec3> origin;  // on the ground, for a camera of height 1
   for (const ObservedLine& line : lines) {

@@ -60,8 +60,8 @@ void checkSpread(const std::vector<ObservedPoint>& points, const Extents& extent
 }
 
 // A view that shows points of a plane at the same places, with depths and nearness reversed: q.z
-// becomes -q.z if the points are reflected in their plane, which leaves them where they are, and
-// then in the picture's.
+// becomes -q.z if the points are reflected in their plane, which does not move them, and then in
+// the picture's plane.
 PointView reversed(const PointView& view, const dvec3& normal) {
   PointView other = view;
   other.nearness = -view.nearness;
@@ -70,13 +70,14 @@ PointView reversed(const PointView& view, const dvec3& normal) {
   return other;
 }
 
-// Whether it fits as well but for rounding.
+// Whether it fits equally well, up to rounding.
 bool isAsGood(const FoundByPoints& found, const FoundByPoints& best, size_t points) {
   constexpr double kRounding = 1e-6;  // also pixels
   return found.squares <= (1 + kRounding) * best.squares + kRounding * kRounding * double(points);
 }
 
-// Minima of different rotations, the best first; of equal ones, those in front of the camera.
+// Minima of different rotations, the best first; among equal ones, those with the points in front
+// of the camera.
 std::vector<FoundByPoints> search(const std::vector<CentredPoint>& points, const dvec3& normal,
                                   const CameraKnowledge& known) {
   constexpr int kStarts = 128, kFirstSteps = 10, kMostSteps = 300;
@@ -129,7 +130,7 @@ SolvedCamera cameraOf(const PointView& view, const PointProblem& problem, const 
 }
 
 // How position (0 to 2), focal length (3) and k1 (4) change with the unknowns. With t the middle of
-// all seen from the camera, position = middle - rotation^T t.
+// all points as seen from the camera, position = middle - rotation^T t.
 Eigen::MatrixXd cameraSlopes(const PointView& view, const PointProblem& problem,
                              const CameraKnowledge& known) {
   const double n = view.nearness, zoom = problem.zoomOf(view), f = zoom / n;
@@ -194,8 +195,8 @@ CameraErrors errorsOf(const FoundByPoints& found, const PointProblem& problem,
   return errors;
 }
 
-// How far, in pixels, the points are from where a camera without perspective sees them, to first
-// order. Of a plane that faces the camera it is 0 whatever the distance.
+// The distance in pixels, to first order, of the points from where a camera without perspective
+// sees them. For a plane that faces the camera it is 0 at any distance.
 double perspectiveOf(const FoundByPoints& found) {
   return found.state.nearness * std::sqrt(found.normal(5, 5));
 }

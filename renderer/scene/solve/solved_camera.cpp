@@ -67,9 +67,9 @@ namespace {
 
 Message warning(std::string text) { return {Message::Kind::Warning, std::move(text)}; }
 
-// By what factor the RMS of another camera must be larger, so that noise does not explain it. Of
-// few degrees of freedom n, the best camera may fit by chance: sqrt(F(n, n)) at 95% is 4.4 for
-// 2, 3.0 for 3, 2.2 for 5.
+// The factor by which the RMS of another camera must be larger if noise is not to explain it. With
+// few degrees of freedom n, the best camera may fit by chance: sqrt(F(n, n)) at 95% is 4.4 for 2,
+// 3.0 for 3, 2.2 for 5.
 double leastRatio(const CameraFit& fit) {
   constexpr double kManyPoints = 2;
   const int unknowns = 6 + fit.errors.fov.has_value() + fit.errors.k1.has_value();

@@ -15,7 +15,7 @@
 
 namespace chromeball {
 
-// As `Camera`, in double precision and for a photograph of a certain size.
+// The same as `Camera`, in double precision and for a photograph of a certain size.
 struct SolvedCamera {
   ImageSize size{};                // of the photograph, in pixels
   glm::dvec3 position{0};          // metres
@@ -31,7 +31,7 @@ struct SolvedCamera {
   glm::dvec3 directionAt(const glm::dvec2& pixel) const;
 };
 
-// Of one standard deviation; nullopt if the value was given and not found.
+// Errors of one standard deviation; nullopt if the value was given and not found.
 struct CameraErrors {
   std::optional<glm::dvec3> position;  // metres
   glm::dvec3 rotation{0};              // radians about the camera's right, up and back axes
@@ -41,8 +41,8 @@ struct CameraErrors {
 struct CameraFit {
   SolvedCamera camera;
   CameraErrors errors;
-  // In pixels: for each point its distance from where the camera sees it, for each line that of its
-  // ends from a line through its middle that has the right vanishing point.
+  // In pixels: for each point, its distance from where the camera sees it; for each line, the
+  // distance of its ends from a line through its middle with the right vanishing point.
   std::vector<double> distances;
   // The root mean square distance of the best camera that differs from this one, if there is one:
   // four points on a plane may allow two.
@@ -64,10 +64,10 @@ double equivalentOn35mm(const ImageSize& size, double focalLength);  // its inve
 // view uncertain.
 Messages doubtsAbout(const CameraFit& fit);
 
-// About points outside the picture.
+// Warnings about points outside the picture.
 Messages doubtsAbout(const std::vector<ObservedPoint>& points, const ImageSize& size);
 
-// About a camera that does not see the model.
+// Warnings about a camera that does not see the model.
 Messages doubtsAbout(const SolvedCamera& camera, const Bounds& model);
 
 // The camera of a file of fSpy (fspy.io): its menu Export, Camera parameters as JSON.

@@ -180,7 +180,7 @@ std::string plusMinus(const EstimateText& e) {
 }
 std::string plusMinus(const Estimate& e) { return plusMinus(estimateText(e)); }
 
-// For numbers that mean nothing if they may be 0.
+// The text of a number that means nothing if it may be 0.
 std::string significant(const Estimate& e) {
   const EstimateText text = estimateText(e);
   if (text.isSignificant) return plusMinus(text);

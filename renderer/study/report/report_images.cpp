@@ -57,7 +57,7 @@ std::vector<Image> loadImages(const RenderStore& store, const Cell& cell) {
   return images;
 }
 
-// For each pixel the root of the mean squared relative error over repeats and channels.
+// A map of the root of the mean squared relative error over repeats and channels.
 Image relativeError(std::span<const Image> repeats, const Image& reference) {
   Image error(reference.width, reference.height, 1);
   for (size_t i = 0; i < error.texels.size(); ++i) {
@@ -72,7 +72,7 @@ Image relativeError(std::span<const Image> repeats, const Image& reference) {
   return error;
 }
 
-// For each pixel the relative bias of luminance; 0 if it is within two standard errors.
+// A map of the relative bias of luminance; 0 where it is within two standard errors.
 Image significantBias(std::span<const Image> repeats, const Reference& reference) {
   Image bias(reference.mean.width, reference.mean.height, 1);
   const double n = double(repeats.size());

@@ -28,7 +28,7 @@ namespace chromeball {
 //   zScale              |z| at the ends of these maps
 nlohmann::ordered_json reportImages(const RenderStore& store, const StudyResults& results);
 
-// For each strategy the cell whose render time is nearest to the longest time that all strategies
+// The cell of each strategy whose render time is nearest to the longest time that all strategies
 // reach.
 std::vector<const Cell*> equalTimeCells(const StudyResults& results);
 

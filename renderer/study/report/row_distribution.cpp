@@ -44,7 +44,7 @@ struct TexelPdf {
   }
   double integral() const { return (left + 2 * centre + right) / 4; }
 
-  // The position in [0, 1] to whose left lies this part of the integral.
+  // The position in [0, 1] that has this part of the integral on its left.
   double position(double part) const {
     const double leftHalf = (left + centre) / 4, rightHalf = (centre + right) / 4;
     const double mass = part * (leftHalf + rightHalf);
@@ -110,7 +110,7 @@ RowDistribution rowDistribution(const Probe& probe, const Importance& importance
     found.luminances.push_back(double(luminance(texel)));
     sums.push_back(within += TexelPdf(weights, column).integral());
   }
-  // Also the sum of the integrals over all texels.
+  // This is also the sum of the integrals over all texels.
   const double all = std::accumulate(weights.begin(), weights.end(), 0.);
   if (!(all > 0))
     throwInput("{}: nothing is sampled in row {}, at an elevation of {:.4g} degrees: it is black",

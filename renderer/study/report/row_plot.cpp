@@ -14,7 +14,7 @@
 namespace chromeball {
 namespace {
 
-// In pixels.
+// Sizes in pixels.
 constexpr double kPlotLeft = 72, kWidth = 864, kRight = 24, kPlotTop = 46, kPanel = 190,
                  kPanelGap = 26;
 constexpr double kCdfTop = kPlotTop + kPanel + kPanelGap, kCdfBottom = kCdfTop + kPanel;
@@ -66,7 +66,8 @@ struct LuminanceAxis {
     const double power = std::log10(luminance);
     return kPlotTop + height * (1 - std::clamp((power - first) / (last - first), 0., 1.));
   }
-  // Powers of ten, not all of many; with twice and five times as much between two or three.
+  // Powers of ten, only some if there are many; with twice and five times each if there are two or
+  // three.
   std::vector<double> ticks() const {
     std::vector<double> ticks;
     const int step = (last - first + 5) / 6;
@@ -128,8 +129,8 @@ std::string luminancePanel(const RowDistribution& row, const AzimuthAxis& azimut
 
 double cdfY(double number) { return kCdfBottom - kPanel * number; }
 
-// From the number on the axis to the curve, and down to the azimuth. The lines of many samples are
-// thinner, so that together they cover no more of the panel.
+// Arrows from the number on the axis to the curve, and down to the azimuth. The lines of many
+// samples are thinner, so that together they cover no more of the panel.
 std::string arrows(const RowDistribution& row, const AzimuthAxis& azimuth) {
   const double crowd = double(row.samples.size());
   const double lineWidth = std::min(1., 24 / crowd), opacity = std::clamp(100 / crowd, 0.3, 0.85);

@@ -11,8 +11,8 @@ namespace {
 constexpr const char* kHost = "127.0.0.1";
 constexpr size_t kConnections = 8;  // browsers open six, and keep them
 
-// A name of this machine. Other names could be those of a page that another server has sent, whose
-// address was changed to this machine afterwards (DNS rebinding).
+// Whether the host is a name of this machine. Another name could belong to a page from another
+// server whose address was changed to this machine afterwards (DNS rebinding).
 bool isLocal(std::string host) {
   for (char& c : host) c = char(std::tolower(uint8_t(c)));
   if (const size_t scheme = host.find("://"); scheme != std::string::npos)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the servers of pages for this machine have in common.
+// Functions that the servers of pages for this machine share.
 #pragma once
 
 #include <httplib.h>
@@ -12,11 +12,11 @@
 
 namespace chromeball {
 
-// Answers programs of this machine, but not pages that other servers have sent to a browser; short
-// requests, of which nothing is stored.
+// Makes the server answer programs of this machine, but not pages that other servers have sent to a
+// browser. Requests are short, and nothing of them is stored.
 void keepLocal(httplib::Server& server);
 
-// At 127.0.0.1. `port` 0: any that is free. Returns the port. Throws InputError.
+// Binds to 127.0.0.1. `port` 0: any that is free. Returns the port. Throws InputError.
 int bindLocal(httplib::Server& server, int port);
 
 void refuse(httplib::Response& response, int status, const std::string& reason);

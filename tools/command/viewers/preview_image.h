@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a preview shows of an image.
+// The parts of an image that a preview shows.
 #pragma once
 
 #include <cstdint>

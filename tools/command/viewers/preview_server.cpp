@@ -35,7 +35,7 @@ class PreviewServer::Server {
     port_ = bindLocal(http_, port);
   }
 
-  // On a thread, until stop().
+  // Runs on a thread, until stop().
   void run() {
     http_.listen_after_bind();
     ended_.set_value();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets of the protocol by which other programs send images to tev, the image viewer
-// (github.com/Tom94/tev, include/tev/Ipc.h): the length in bytes with its own four, the type, then
-// the fields, all little-endian without padding; strings end in a zero byte.
+// Packets of the protocol for sending images to tev, the image viewer (github.com/Tom94/tev,
+// include/tev/Ipc.h): the length in bytes with its own four, the type, then the fields, all
+// little-endian without padding; strings end in a zero byte.
 #pragma once
 
 #include <string>

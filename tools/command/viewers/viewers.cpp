@@ -8,7 +8,7 @@
 namespace chromeball {
 namespace {
 
-// That of "tev" or "tev=HOST:PORT". Throws InputError.
+// The address in "tev" or "tev=HOST:PORT". Throws InputError.
 std::string tevAddress(const std::string& display) {
   constexpr std::string_view kDefault = "127.0.0.1:14158";  // tev's own
   if (display == "tev") return std::string(kDefault);

@@ -14,8 +14,8 @@ namespace chromeball {
 
 class Viewers {
  public:
-  // Opens those of --preview and --display. `stop` ends the render; it may be called from other
-  // threads. Throws InputError.
+  // Opens the viewers of --preview and --display. `stop` ends the render; it may be called from
+  // other threads. Throws InputError.
   Viewers(const Settings& settings, std::function<void()> stop);
 
   std::vector<Viewer*> all() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the pages of a preview know of a render. Thread-safe.
+// The state of a render for the pages of a preview. Thread-safe.
 #pragma once
 
 #include <atomic>
@@ -23,17 +23,17 @@ struct NumberedImage {
 
 class WatchedRender {
  public:
-  // Of the render.
+  // Called by the render.
   void begin(const std::string& name);
   void update(double fraction);
   void show(std::shared_ptr<const ImageSoFar> image);
   bool isWatched() const;  // whether a page has asked for the status in the last seconds
   bool wantsFiles() const { return wantsFiles_; }
   void wroteFiles();
-  // Until the image is sent and the status told, unless no page asks; a few seconds at most.
+  // Waits until the image and the status are sent, unless no page asks; a few seconds at most.
   void waitUntilSeen();
 
-  // Of the pages. They ask for the status again and again.
+  // Called for the pages, which ask for the status again and again.
   nlohmann::json status();
   NumberedImage image() const;
   void hasSent(uint64_t number);

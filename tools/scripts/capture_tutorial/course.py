@@ -12,8 +12,8 @@ TIMES = "1/10,1/40,1/160"
 SAMPLES = "bbold72_cs445_samples"
 # The record of a run, for machines without the photographs.
 RECORD = pathlib.Path(__file__).with_name("course_record.md")
-# Edges in empty.jpg: of the desk and the shelf along the wall (x), of both away from it (z), and a post (y). The depth
-# of the desk is assumed: 30 inches, a usual size.
+# Edges in empty.jpg: the desk's and the shelf's along the wall (x) and away from it (z), and a post
+# (y). The depth of the desk is assumed: 30 inches, a usual size.
 LINES = """axis,x1,y1,x2,y2,metres
 x,364,1614,2091,2110,
 x,1405,1350,2685,1551,
