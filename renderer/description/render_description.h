@@ -122,8 +122,9 @@ struct RenderDescription {
   LightingDescription lighting;
   std::optional<CompositeDescription> composite;
 
-  RenderSettings settings;        // of the integrator; its width and height are set by loadScene()
-  std::optional<ImageSize> size;  // nullopt: the height of `settings`, as wide as the model's camera
+  RenderSettings settings;  // of the integrator; its width and height are set by loadScene()
+  std::optional<ImageSize>
+      size;  // nullopt: the height of `settings`, as wide as the model's camera
   SingleSided singleSided = SingleSided::Camera;
   bool straightGlassShadows = false;  // passShadowsStraight()
 

@@ -109,7 +109,8 @@ struct RenderSettings {
   int maxDiffuseDepth = INT_MAX, maxSpecularDepth = INT_MAX;  // as in PathSettings
   IntegratorKind integrator = IntegratorKind::Path;
   Occlusion occlusion;
-  std::optional<float> cacheError;  // of approximate/irradiance_cache.h; nullopt: light is not cached
+  std::optional<float>
+      cacheError;  // of approximate/irradiance_cache.h; nullopt: light is not cached
   Mis mis = Mis::Balance;
   uint64_t seed = 0;
   bool hideProbe = false;      // from the camera
