@@ -58,8 +58,8 @@ TEST(Depth, TransmissiveBodiesHaveTheirOwnLimit) {
   const RenderResult r = renderTop(vase(0), settings);
   EXPECT_LT(meanColor(r.film.mean()).y, 0.85f);
   const DepthCut& cut = r.depthCut;
-  EXPECT_EQ(cut.byDepth, 0);
-  EXPECT_NEAR(cut.fraction(cut.byTransmission), 1 - meanColor(r.film.mean()).y, 0.03);
+  EXPECT_EQ(cut.fraction(DepthLimit::Depth), 0);
+  EXPECT_NEAR(cut.fraction(DepthLimit::Transmission), 1 - meanColor(r.film.mean()).y, 0.03);
 }
 
 // Bounces on other materials count for maxDepth: 0 is visible emission only, 1 adds direct light.
@@ -103,17 +103,40 @@ TEST(Depth, TheCutFractionIsEstimatedWithoutBias) {
     const RenderResult r = renderTop(scene, smallRender(16, 16, 512, depth));
     const DepthCut& cut = r.depthCut;
     const double expected = std::pow(kAlbedo, depth + 1);
-    EXPECT_NEAR(cut.fraction(cut.byDepth) / expected, 1, 0.12) << depth;
-    EXPECT_EQ(cut.byTransmission, 0);
+    EXPECT_NEAR(cut.fraction(DepthLimit::Depth) / expected, 1, 0.12) << depth;
+    EXPECT_EQ(cut.fraction(DepthLimit::Transmission), 0);
     EXPECT_NEAR(meanColor(r.film.mean()).y, (1 - expected) / (1 - kAlbedo), 0.02);
   }
+}
+
+// Half of the view is a closed room, whose noise draws samples, half an even background.
+TEST(Depth, TheCutFractionIsThatOfTheImageWhereSamplesAreAdaptive) {
+  constexpr double kAlbedo = 0.7;
+  Scene scene;
+  Material wall = lambert(Rgb(float(kAlbedo)));
+  addSphere(scene, addMaterial(scene, wall), vec3(2.5f, 0, 0), -2.5f, 16, false);
+  wall.emission = Rgb(1);
+  addQuad(scene, addMaterial(scene, wall), {2.2f, 2, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f});
+  Material even = lambert(Rgb(0));
+  even.emission = Rgb(0.3f);
+  addSphere(scene, addMaterial(scene, even), vec3(-2.5f, 0, 0), -2.5f, 16, false);
+  const Camera camera = Camera::lookAt({0, 0, 2.4f}, {0, 0, 0}, {0, 1, 0}, 1);
+  double fractions[2];
+  for (const bool adaptive : {false, true}) {
+    RenderSettings settings = smallRender(32, 32, 512, 1);
+    settings.adaptive = adaptive;
+    fractions[adaptive] = renderScene(scene, camera, whiteProbe(), "importance", settings)
+                              .depthCut.fraction(DepthLimit::Depth);
+  }
+  EXPECT_GT(fractions[0], 0.02);
+  EXPECT_NEAR(fractions[1] / fractions[0], 1, 0.15);
 }
 
 TEST(Depth, NothingIsCutInAConvexOpenScene) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
   const DepthCut cut = renderTop(scene, smallRender(16, 16, 64, 1)).depthCut;
-  EXPECT_EQ(cut.byDepth, 0);
+  EXPECT_EQ(cut.fraction(DepthLimit::Depth), 0);
   EXPECT_GT(cut.found, 0);
 }
 

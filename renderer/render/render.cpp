@@ -149,7 +149,9 @@ class Renderer {
     RenderResult& result = state_.result;
     workers_.forEach([&](PixelWorker& worker) {
       result.rays.add(std::exchange(worker.context.counts, {}));
-      result.depthCut.add(std::exchange(worker.context.depthCut, {}));
+      // Its sums are those of the image only while all pixels have as many samples.
+      const DepthCut cut = std::exchange(worker.context.depthCut, {});
+      if (!state_.allocation) result.depthCut.add(cut);
       result.clamped.add(worker.context.clamp.takeClamped());
       result.invalid.add(std::exchange(worker.invalid, {}));
     });

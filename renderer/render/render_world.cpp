@@ -41,14 +41,13 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
     return render(SurfaceLayers(picture, tracer, settings.aovs, settings.occlusion), world, camera,
                   limits, rest, stop, training, control);
   };
-  // Without bounces there is nothing to approximate.
-  if (usesEnvironment(settings.integrator) && settings.maxDepth > 0) {
+  if (settings.usesEnvironmentMaps()) {
     assert(aids.environment);
     return withLayers(EnvironmentMapIntegrator(world, lighting, *aids.environment, settings.path(),
                                                settings.usedOcclusion()),
                       nullptr, settings, progress);
   }
-  if (settings.cacheError && settings.path().maxDepth > 1) {  // else no surface lights another
+  if (settings.usesCache()) {
     IrradianceCache own(*settings.cacheError);
     IrradianceCache& cache = aids.cache ? *aids.cache : own;
     const PathSettings paths = withoutDepthCut(settings.path());
