@@ -114,6 +114,7 @@ void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cach
   loaded.view = models.view;
   loaded.camera = models.camera;
   loaded.hasModelLights = models.hasLights;
+  loaded.moves = models.moves;
   loaded.modelWarnings = std::move(models.warnings);
   if (!job.probe.file && !models.scene.environment) checkLit(job, models.scene);
   shareMeshes(loaded.scene, models.scene);
@@ -163,6 +164,7 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
                      models.hasLights,
                      models.origin,
                      std::move(sources),
+                     models.moves,
                      std::move(files)};
   result.modelWarnings = std::move(models.warnings);
   result.description = std::move(job);
