@@ -49,7 +49,7 @@ void addRender(std::vector<Setting>& rows) {
        .range = kPositive,
        .unit = "seconds",
        .absent = "no limit",
-       .help = "Stops after about this time.",
+       .help = "Stops after about this time, but not before each pixel has 4 samples.",
        .effect = Effect::Limit,
        .renderOnly = true});
   add({.key = "noise",

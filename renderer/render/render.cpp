@@ -176,7 +176,10 @@ void renderPasses(Renderer& renderer, RenderState& state, const Progress& progre
   while (!stop) {
     if (state.finished.empty()) {
       const uint32_t wanted = state.schedule.next(state.done, result.film);
-      if (wanted <= state.done) return progress(1);  // what was left was estimated
+      if (wanted <= state.done) {
+        result.overrun = state.schedule.overrun(state.done);
+        return progress(1);  // what was left was estimated
+      }
       renderer.startPass(wanted);
     }
     const auto pauses = [&] { return control && control->wantsPause(state); };
@@ -218,6 +221,7 @@ void RenderResult::addTotals(const RenderResult& part) {
   guidedRegions += part.guidedRegions;
   causticFraction = std::max(causticFraction, part.causticFraction);
   interrupted |= part.interrupted;
+  overrun = std::max(overrun, part.overrun);
 }
 
 void RenderResult::copyPixels(const RenderResult& from, const PixelRect& rect) {

@@ -57,8 +57,12 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
         settings.seed, [&](double fraction) { progress(kFillShare * fraction); }, stop);
     GuideTraining training(world, lighting, settings);
     const PathTracer tracer(world, lighting, training.guided(paths));
-    return withLayers(CachedIntegrator(tracer, cache), &training, after(watch.seconds(), settings),
-                      [&](double fraction) { progress(kFillShare + (1 - kFillShare) * fraction); });
+    const double filling = watch.seconds();
+    RenderResult result =
+        withLayers(CachedIntegrator(tracer, cache), &training, after(filling, settings),
+                   [&](double fraction) { progress(kFillShare + (1 - kFillShare) * fraction); });
+    if (result.overrun > 0) result.overrun += filling;
+    return result;
   }
   if (settings.wantsGroups()) {
     const LightGroups groups(world, lighting);
