@@ -65,6 +65,7 @@ TEST_F(CommandIntegrators, RefuseWhatTheyDoNotKnow) {
   refuses({"--ao"}, "--ao");
   refuses({"--reflection-occlusion"}, "--reflection-occlusion");
   refuses({"--ao-distance", "1"}, "--ao-distance");
+  refuses({"--ao-distance", "1", "--integrator", "environment-map"}, "--ao-distance");
   refuses({"--ao-distance", "0", "--aov", "ao"}, "--ao-distance");
   refuses({"--integrator", "environment-map", "--regularize"}, "--regularize");
   refuses({"--integrator", "environment-map", "--aov", "light_groups"}, "light groups");
@@ -74,6 +75,57 @@ TEST_F(CommandIntegrators, RefuseWhatTheyDoNotKnow) {
   refuses({"--max-diffuse-depth", "-1"}, "--max-diffuse-depth");
   refuses({"--bent", "flat"}, "--bent");
   refuses({"--bent", "uniform"}, "--bent: is for the layer");
+}
+
+// Bit by bit, and each is named.
+TEST_F(CommandIntegrators, NameSettingsWithoutEffect) {
+  const auto check = [&](const Strings& integrator, const Strings& idle, bool isIdle) {
+    Strings base = integrator, more{"--samples", "16"};
+    base.insert(base.end(), more.begin(), more.end());
+    Strings changed = base;
+    changed.insert(changed.end(), idle.begin(), idle.end());
+    const bool isSame = findColor(render(base))->texels == findColor(render(changed))->texels;
+    Strings all = with(changed);
+    all.insert(all.end(), {"-o", folder_ / "o.exr"});
+    const bool isNamed =
+        runCommand(all).error.find(idle[0] + " has no effect without ") != std::string::npos;
+    EXPECT_EQ(isSame, isIdle) << integrator[1] << idle[0] << idle[1];
+    EXPECT_EQ(isNamed, isIdle) << integrator[1] << idle[0] << idle[1];
+  };
+  for (const char* name : {"environment-map", "ambient-occlusion"}) {
+    const Strings integrator{"--integrator", name};
+    check(integrator, {"--strategy", "uniform"}, true);
+    check(integrator, {"--strategy", "median-cut:8"}, true);
+    check(integrator, {"--mis", "off"}, true);
+    check(integrator, {"--max-depth", "3"}, true);
+    check(integrator, {"--max-depth", "0"}, false);
+    check(integrator, {"--clamp", "0.1"}, false);
+  }
+  const Strings direct{"--integrator", "direct"};
+  check(direct, {"--strategy", "uniform"}, false);
+  check(direct, {"--mis", "off"}, false);
+  check(direct, {"--max-depth", "3"}, true);
+  check(direct, {"--max-depth", "0"}, false);
+  check(direct, {"--max-diffuse-depth", "1"}, true);
+  check(direct, {"--max-diffuse-depth", "0"}, false);
+  // A layer of what paths find.
+  Strings irradiance = with({"--integrator", "environment-map", "--aov", "irradiance", "--strategy",
+                             "uniform", "--samples", "4", "-o", folder_ / "o.exr"});
+  EXPECT_EQ(runCommand(irradiance).error.find("no effect"), std::string::npos);
+}
+
+TEST_F(CommandIntegrators, HaveNoEstimateOfTheLightThatTheyCut) {
+  const auto cut = [&](const Strings& more) {
+    Strings all{"--samples", "4", "--stats", folder_ / "s.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    render(all);
+    return jsonOfFile(folder_ / "s.json")["depth_cut"];
+  };
+  EXPECT_TRUE(cut({"--irradiance-cache", "0.3"}).is_null());
+  EXPECT_TRUE(cut({"--integrator", "environment-map"}).is_null());
+  for (const char* limit :
+       {"max_depth", "max_diffuse_depth", "max_specular_depth", "max_transmission_depth"})
+    EXPECT_EQ(cut({})[limit], 0);
 }
 
 TEST_F(CommandIntegrators, RefuseSources) {

@@ -669,6 +669,14 @@ TEST(CommandRender, NamesSettingsWithoutEffect) {
   expectOne({"--glass-shadows", "straight"}, "smooth bodies of glass");
   expectOne({"--max-transmission-depth", "3"}, "bodies of glass");
   expectOne({"--light-from", "rest"}, "suns");
+  const std::string many = "paths of more bounces (--integrator path, --max-depth 2)";
+  expectOne({"--regularize", "--max-depth", "1"}, many);
+  expectOne({"--regularize", "--integrator", "direct"}, many);
+  expectOne({"--regularize", "--max-depth", "2"}, "");
+  expectOne({"--irradiance-cache", "0.3", "--max-depth", "1"}, many);
+  expectOne({"--max-diffuse-depth", "8"}, "a higher limit of all bounces");
+  expectOne({"--max-specular-depth", "1", "--integrator", "direct"},
+            "a higher limit of all bounces");
   expectOne({"--probe-rotation", "30", "--probe-scale", "2", "--probe-mapping", "lat-long"}, "");
   expectOne({"--single-sided", "light"}, "");
 }

@@ -150,6 +150,8 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
   std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
   if (job.surroundings && !room)
     checkInside(scene, *surroundingsOf(job, models.origin), job.sceneName());
+  if (job.surroundings && !job.probe.file && !job.probe.map && !scene.environment)
+    throwInput("{}: [surroundings] needs a probe", job.origins.of("surroundings"));
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe = probeOf(job, loaded);
   std::optional<ProbeSources> sources = sourcesOf(job, loaded, probe);
@@ -162,9 +164,9 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
                      surroundingsOf(job, models.origin),
                      std::move(room),
                      models.hasLights,
+                     models.moves,
                      models.origin,
                      std::move(sources),
-                     models.moves,
                      std::move(files)};
   result.modelWarnings = std::move(models.warnings);
   result.description = std::move(job);
