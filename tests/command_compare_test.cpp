@@ -104,11 +104,12 @@ TEST_F(SlowCommandCompare, RendersEqualRowsOnce) {
             std::string::npos)
       << result.error;
   std::set<std::string> names;
-  for (const json& strategy : results()["strategies"]) names.insert(strategy["name"]);
+  const json found = results();
+  for (const json& strategy : found["strategies"]) names.insert(strategy["name"]);
   EXPECT_EQ(names,
             (std::set<std::string>{"uniform+environment-map", "uniform+direct", "importance+direct",
                                    "median-cut:8+direct", "suns+environment-map", "suns+direct"}));
-  EXPECT_EQ(results()["baseline"], "uniform+environment-map");
+  EXPECT_EQ(found["baseline"], "uniform+environment-map");
 }
 
 TEST_F(SlowCommandCompare, writesAllResultsAndContinues) {

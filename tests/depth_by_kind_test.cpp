@@ -49,7 +49,7 @@ TEST(DepthByKind, SpecularBouncesAreASeriesToo) {
 }
 
 // d bounces of albedo a find the fraction 1 - a^(d+1) of the light.
-TEST(DepthByKind, TheCutFractionIsEstimatedWithoutBias) {
+TEST(SlowDepthByKind, TheCutFractionIsEstimatedWithoutBias) {
   constexpr double kAlbedo = 0.7;
   const Material matte = lambert(Rgb(float(kAlbedo)));
   Material metal;

@@ -128,7 +128,8 @@ TEST(LightFrom, SaysThatThereAreNoSuns) {
   writeSmallModel(folder / "model.gltf");
   for (const char* lamp :
        {"", "[[light]]\ntype = 'point'\nposition = [0, 2, 0]\nintensity = 1\n",
-        "[[light]]\ntype = 'disc'\nposition = [0, 2, 0]\nradius = 1\nradiance = 1\n"}) {
+        "[[light]]\ntype = 'disc'\nposition = [0, 2, 0]\ndirection = [0, -1, 0]\n"
+        "radius = 1\nradiance = 1\n"}) {
     std::ofstream(folder / "scene.toml") << "model = 'model.gltf'\n" << lamp;
     expectError({"render", folder / "scene.toml", "--light-from", "suns", "-o", folder / "o.exr"},
                 "--light-from: there are no suns, neither in the probe nor in the scene file");
