@@ -14,6 +14,11 @@ constexpr int kExtraBounces = 256;
 
 int raisedLimit(int limit) { return std::min(limit, INT_MAX - kExtraBounces) + kExtraBounces; }
 
+// More paths reach the limits by kind, and earlier, than the others.
+constexpr uint32_t intervalOf(DepthLimit limit) {
+  return limit == DepthLimit::Diffuse || limit == DepthLimit::Specular ? 256 : 64;
+}
+
 // Whether limits of bounces by kind may leave lobes of the material out. The kind that makes up for
 // multiple scattering of metal, which is diffuse, does not count.
 bool mayBeDiffuse(const Material& m) {
@@ -41,14 +46,13 @@ std::optional<DepthLimit> PathTracer::reachedLimit(const PathState& state, const
   return {};
 }
 
-// Continues one in kInterval of the paths that reach a limit twice with the same random numbers:
+// Continues one in intervalOf() of the paths that reach a limit twice with the same random numbers:
 // with the given limits, and with kExtraBounces more bounces. The difference is the light cut off.
 [[gnu::noinline]] void PathTracer::followTwice(PathState& state, const Hit& hit, DepthLimit limit,
                                                PathContext& context) const {
-  constexpr uint32_t kInterval = 64;
   constexpr uint64_t kPurpose = 0x637574;  // separate random stream
   state.cutIsEstimated = true;
-  if (hash(context.sampler.sampleKey(), kPurpose) % kInterval != 0) return;
+  if (hash(context.sampler.sampleKey(), kPurpose) % intervalOf(limit) != 0) return;
   PathSettings limited = settings_;
   limited.estimateDepthCut = false;
   PathSettings farther = limited;
@@ -71,7 +75,7 @@ std::optional<DepthLimit> PathTracer::reachedLimit(const PathState& state, const
   context.records = records;
   context.groups = groups;
   context.sampler.startVertex(state.depth);
-  if (std::isfinite(cut)) context.depthCut.add(limit, kInterval * cut);
+  if (std::isfinite(cut)) context.depthCut.add(limit, intervalOf(limit) * cut);
 }
 
 void PathTracer::estimateDepthCut(PathState& state, const std::optional<Hit>& hit,

@@ -151,14 +151,19 @@ std::string noneInView(const Scene& scene, const Seen& seen) {
   return "no surface is in view; try another camera";
 }
 
-// The limits that took a substantial part of the light that the paths would have found.
+// The limits that took light which the paths would have found; nearly all, by --clamp. Much of the
+// light may be that of the background.
 std::vector<std::string> limitsOf(const RenderSettings& settings, const RenderResult& result) {
-  constexpr double kSubstantial = 0.5;
+  constexpr double kLeast = 1e-3, kNearlyAll = 0.95;
   std::vector<std::string> limits;
-  for (size_t i = 0; i < DepthCut::kLimits; ++i)
-    if (const DepthLimit limit = DepthLimit(i); result.depthCut.fraction(limit) > kSubstantial)
+  for (size_t i = 0; i < DepthCut::kLimits; ++i) {
+    const DepthLimit limit = DepthLimit(i);
+    // Of few samples, the estimate may have none.
+    const bool isZero = limit == DepthLimit::Diffuse && settings.maxDiffuseDepth == 0;
+    if (isZero || result.depthCut.fraction(limit) > kLeast)
       limits.push_back(limitGiven(limit, settings));
-  if (result.clamped.fractionRemoved() > kSubstantial)
+  }
+  if (result.clamped.fractionRemoved() > kNearlyAll)
     limits.push_back(fmt::format("--clamp {:g}", *settings.clamp));
   return limits;
 }
