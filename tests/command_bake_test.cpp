@@ -113,6 +113,32 @@ TEST_F(CommandBake, NeedsNoProbeForOcclusion) {
   expectError({"bake", folder_ / "plate.gltf", "-o", folder_ / "e.glb"}, "needs a probe");
 }
 
+TEST_F(CommandBake, OcclusionDoesNotDependOnLight) {
+  const auto bakeOcclusion = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"bake",
+                                   folder_ / "plate.gltf",
+                                   "--what",
+                                   "ambient-occlusion",
+                                   "--to",
+                                   "vertices",
+                                   "--quiet",
+                                   "--samples",
+                                   "4",
+                                   "-o",
+                                   folder_ / "ao.glb"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0);
+    return std::pair(fileContents(folder_ / "ao.glb"), result.error);
+  };
+  const auto plain = bakeOcclusion({});
+  EXPECT_EQ(plain.second, "");
+  EXPECT_EQ(
+      bakeOcclusion({"--probe", folder_ / "probe.exr", "--strategy", "suns", "--max-depth", "1"}),
+      std::pair(plain.first, std::string("chromeball: warning: --probe, --strategy, "
+                                         "--max-depth have no effect on occlusion\n")));
+}
+
 TEST_F(CommandBake, RefusesBadInput) {
   refuses({}, "must end in .glb or .gltf", "refused.obj");
   refuses({"--size", "1000000000"}, "--size: should be a whole number from 16 to 16384");

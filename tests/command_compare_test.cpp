@@ -76,6 +76,42 @@ TEST_F(SlowCommandCompare, NamesSettingsThatItDoesNotHeed) {
       << result.error;
 }
 
+// Rows that differ only in what their integrator does not use.
+TEST_F(SlowCommandCompare, RendersEqualRowsOnce) {
+  const CommandResult result = runCommand({"compare",
+                                           folder_ / "plate.gltf",
+                                           "--probe",
+                                           folder_ / "probe.exr",
+                                           "--size",
+                                           "8x8",
+                                           "-o",
+                                           dir(),
+                                           "--strategies",
+                                           "uniform,importance,median-cut:8,suns",
+                                           "--integrators",
+                                           "environment-map,direct",
+                                           "--baseline",
+                                           "importance+environment-map",
+                                           "--samples",
+                                           "1",
+                                           "--repeats",
+                                           "3",
+                                           "--reference-samples",
+                                           "64"});
+  EXPECT_EQ(result.status, 0) << result.error;
+  EXPECT_NE(result.error.find("importance+environment-map, median-cut:8+environment-map are the "
+                              "same image as uniform+environment-map, which is compared alone"),
+            std::string::npos)
+      << result.error;
+  std::set<std::string> names;
+  const json found = results();
+  for (const json& strategy : found["strategies"]) names.insert(strategy["name"]);
+  EXPECT_EQ(names,
+            (std::set<std::string>{"uniform+environment-map", "uniform+direct", "importance+direct",
+                                   "median-cut:8+direct", "suns+environment-map", "suns+direct"}));
+  EXPECT_EQ(found["baseline"], "uniform+environment-map");
+}
+
 TEST_F(SlowCommandCompare, writesAllResultsAndContinues) {
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);
   const json first = results();

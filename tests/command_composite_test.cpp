@@ -261,6 +261,10 @@ TEST_F(SlowCommandComposite, SurroundingsMustContainTheModel) {
   expectInputError(
       scene(kGood, "[surroundings]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nmin = [0, 0, 0]"),
       "a sphere has no `min`; it has shape, center, radius, capture");
+  std::ofstream(path("lamp.toml")) << "model = 'model.gltf'\n[[light]]\ndirection = [0, 1, 0]\n"
+                                   << "irradiance = 1\n"
+                                   << room << "max = [2, 5, 2]\n";
+  expectInputError(path("lamp.toml"), "lamp.toml:5: [surroundings] needs a probe");
 }
 
 TEST_F(SlowCommandComposite, SurroundingsMayBeAModel) {

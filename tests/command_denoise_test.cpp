@@ -142,7 +142,7 @@ TEST_F(CommandDenoise, RefusesDamagedLayers) {
   expectRefused("denoise.normal_half", [](Layers& l) { l[7].image.texels[7] = INFINITY; });
   expectRefused("denoise.albedo", [](Layers& l) { l[4].image.texels[7] = 1e30f; });
   expectRefused("denoise.direct", [](Layers& l) { l[2].image.texels[7] = NAN; });
-  expectRefused("the color", [](Layers& l) { l[0].image.texels[0] = -3e38f; });
+  expectRefused("the colour", [](Layers& l) { l[0].image.texels[0] = -3e38f; });
   expectRefused("no channel R", [](Layers& l) { l[0].channels = "XYZ"; });
   expectRefused("noisy of 3 channels", [](Layers& l) {
     l.push_back({"noisy", "Y", Image(l[0].image.width, l[0].image.height, 1)});

@@ -179,8 +179,11 @@ TEST_F(SlowCommandGround, ScalesTheProbeByThePlate) {
     for (int x = 0; x < kWidth; ++x, ++count) sum += glm::dvec3(ground.rgb(x, y));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / count / plate.rgb(0, 0)[c], 1, 0.02);
   // A number on the command line comes first.
+  constexpr const char* kIdle = "`composite.ground_reflectance_range` has no effect without";
+  EXPECT_EQ(messages_.find(kIdle), std::string::npos);
   render(scene(lines, "", "scale = \"plate\""), {"--probe-scale", "1"});
   EXPECT_EQ(messages_.find("the probe's scale is"), std::string::npos);
+  EXPECT_NE(messages_.find(kIdle), std::string::npos) << messages_;
 }
 
 TEST_F(SlowCommandGround, RefusesWhatDoesNotFit) {

@@ -65,6 +65,7 @@ TEST_F(CommandIntegrators, RefuseWhatTheyDoNotKnow) {
   refuses({"--ao"}, "--ao");
   refuses({"--reflection-occlusion"}, "--reflection-occlusion");
   refuses({"--ao-distance", "1"}, "--ao-distance");
+  refuses({"--ao-distance", "1", "--integrator", "environment-map"}, "--ao-distance");
   refuses({"--ao-distance", "0", "--aov", "ao"}, "--ao-distance");
   refuses({"--integrator", "environment-map", "--regularize"}, "--regularize");
   refuses({"--integrator", "environment-map", "--aov", "light_groups"}, "light groups");
@@ -74,6 +75,64 @@ TEST_F(CommandIntegrators, RefuseWhatTheyDoNotKnow) {
   refuses({"--max-diffuse-depth", "-1"}, "--max-diffuse-depth");
   refuses({"--bent", "flat"}, "--bent");
   refuses({"--bent", "uniform"}, "--bent: is for the layer");
+}
+
+class SlowCommandIntegrators : public CommandIntegrators {};
+
+// Bit by bit, and each is named.
+TEST_F(SlowCommandIntegrators, NameSettingsWithoutEffect) {
+  const auto rendered = [&](Strings options) {
+    options = with(options);
+    options.insert(options.end(), {"--samples", "16", "-o", folder_ / "o.exr"});
+    const CommandResult result = runCommand(options);
+    EXPECT_EQ(result.status, 0) << result.error;
+    return std::pair(findColor(readImageFile(folder_ / "o.exr"))->texels, result.error);
+  };
+  const auto check = [&](const std::string& integrator, const std::vector<Strings>& idle,
+                         const std::vector<Strings>& effective) {
+    const auto plain = rendered({"--integrator", integrator});
+    for (const auto* settings : {&idle, &effective})
+      for (const Strings& setting : *settings) {
+        Strings options{"--integrator", integrator};
+        options.insert(options.end(), setting.begin(), setting.end());
+        const auto [texels, error] = rendered(options);
+        const bool isNamed =
+            error.find(setting[0] + " has no effect without ") != std::string::npos;
+        EXPECT_EQ(texels == plain.first, settings == &idle) << integrator << setting[0];
+        EXPECT_EQ(isNamed, settings == &idle) << integrator << setting[0] << error;
+      }
+  };
+  for (const char* name : {"environment-map", "ambient-occlusion"})
+    check(name,
+          {{"--strategy", "uniform"},
+           {"--strategy", "median-cut:8"},
+           {"--mis", "off"},
+           {"--max-depth", "3"}},
+          {{"--max-depth", "0"}, {"--clamp", "0.1"}});
+  check("direct", {{"--max-depth", "3"}, {"--max-diffuse-depth", "1"}},
+        {{"--strategy", "uniform"},
+         {"--mis", "off"},
+         {"--max-depth", "0"},
+         {"--max-diffuse-depth", "0"}});
+  // A layer of what paths find.
+  EXPECT_EQ(
+      rendered({"--integrator", "environment-map", "--aov", "irradiance", "--strategy", "uniform"})
+          .second,
+      "");
+}
+
+TEST_F(CommandIntegrators, HaveNoEstimateOfTheLightThatTheyCut) {
+  const auto cut = [&](const Strings& more) {
+    Strings all{"--samples", "4", "--stats", folder_ / "s.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    render(all);
+    return jsonOfFile(folder_ / "s.json")["depth_cut"];
+  };
+  EXPECT_TRUE(cut({"--irradiance-cache", "0.3"}).is_null());
+  EXPECT_TRUE(cut({"--integrator", "environment-map"}).is_null());
+  for (const char* limit :
+       {"max_depth", "max_diffuse_depth", "max_specular_depth", "max_transmission_depth"})
+    EXPECT_EQ(cut({})[limit], 0);
 }
 
 TEST_F(CommandIntegrators, RefuseSources) {

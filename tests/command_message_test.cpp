@@ -117,6 +117,39 @@ TEST_F(SlowCommandMessage, NamesTheProbesScaleAsTheCauseOfABlackImage) {
   EXPECT_EQ(render({}).error.find("are black"), std::string::npos);
 }
 
+// Each time there is light, until a setting takes it.
+TEST_F(SlowCommandMessage, NamesWhatTookTheLightOfABlackImage) {
+  const auto expectNamed = [&](const Words& given, const std::string& names,
+                               const std::string& scene = "") {
+    std::ofstream(folder_ / "s.toml")
+        << "model = '" << w_.save() << "'\n[camera]\nposition = [0.3, 0.3, 1]\n"
+        << "look_at = [0.3, 0.3, 0]\nfov = 20\n"
+        << scene;
+    Words words{"render", folder_ / "s.toml", "--size", "4x4", "--samples", "16",
+                "-o",     folder_ / "a.exr"};
+    if (scene.empty()) words.insert(words.end(), {"--probe", folder_ / "probe.exr"});
+    EXPECT_EQ(runCommand(words).error.find("are black"), std::string::npos);
+    words.insert(words.end(), given.begin(), given.end());
+    const std::string error = runCommand(words).error;
+    EXPECT_NE(error.find("no light reaches them with " + names), std::string::npos)
+        << names << ": " << error;
+    EXPECT_EQ(error.find("[[light]]"), std::string::npos) << error;
+  };
+  w_.add("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                       {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}});
+  w_.root["meshes"][0]["primitives"][0]["material"] = 0;
+  const std::string depth = "--max-diffuse-depth 0; leave it out";
+  expectNamed({"--max-diffuse-depth", "0"}, depth);
+  expectNamed({"--max-diffuse-depth", "0", "--integrator", "direct"}, depth);
+  expectNamed({"--max-diffuse-depth", "0", "--max-specular-depth", "0"}, depth);
+  expectNamed({"--clamp", "1e-7"}, "--clamp 1e-07; leave it out");
+  const std::string lamp = "[[light]]\ntype = 'point'\nposition = [0.3, 0.3, 1]\nintensity = 1\n";
+  const std::string sun = "[[light]]\ntype = 'sun'\nirradiance = 1\ndirection = ";
+  expectNamed({"--light-from", "suns"}, "--light-from suns; leave it out",
+              lamp + sun + "[0, 0, -1]\n");
+  expectNamed({"--light-from", "rest"}, "--light-from rest; leave it out", sun + "[0, 0, 1]\n");
+}
+
 TEST_F(SlowCommandMessage, WarnsAboutASquareProbeReadAsLatLong) {
   const auto messages = [&](ImageSize size, const char* mapping) {
     writeImage(folder_ / "probe.exr", constantProbe(size, Rgb(1)));

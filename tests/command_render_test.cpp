@@ -398,6 +398,19 @@ TEST(SlowCommandRender, StopsAtTheTimeOrTheNoise) {
   const double rays = timed["samples_per_pixel"].get<double>() * 32 * 24;
   EXPECT_NEAR(timed["rays"]["camera"].get<double>(), rays, 0.06 * rays);  // a small image
 
+  const auto said = [&](const char* seconds, const char* samples) {
+    return scene
+        .renderScene(scene.model, {"--probe", scene.gradient, "--size", "32x24", "--time", seconds,
+                                   "--samples", samples, "--quiet", "-o", scene.out / "a.exr"})
+        .error;
+  };
+  for (const char* samples : {"2", "4", "1000"})
+    EXPECT_NE(said("1e-9", samples)
+                  .find("warning: --time: the first pass, which is always completed, took "),
+              std::string::npos)
+        << samples << said("1e-9", samples);
+  EXPECT_EQ(said("100", "64"), "");
+
   scene.render({"--probe", scene.gradient, "--size", "32x24", "--noise", "2", "-o",
                 scene.out / "a.exr", "--stats", scene.out / "noise.json"});
   const json measured = scene.stats("noise.json");
@@ -656,6 +669,14 @@ TEST(CommandRender, NamesSettingsWithoutEffect) {
   expectOne({"--glass-shadows", "straight"}, "smooth bodies of glass");
   expectOne({"--max-transmission-depth", "3"}, "bodies of glass");
   expectOne({"--light-from", "rest"}, "suns");
+  const std::string many = "paths of more bounces (--integrator path, --max-depth 2)";
+  expectOne({"--regularize", "--max-depth", "1"}, many);
+  expectOne({"--regularize", "--integrator", "direct"}, many);
+  expectOne({"--regularize", "--max-depth", "2"}, "");
+  expectOne({"--irradiance-cache", "0.3", "--max-depth", "1"}, many);
+  expectOne({"--max-diffuse-depth", "8"}, "a higher limit of all bounces");
+  expectOne({"--max-specular-depth", "1", "--integrator", "direct"},
+            "a higher limit of all bounces");
   expectOne({"--probe-rotation", "30", "--probe-scale", "2", "--probe-mapping", "lat-long"}, "");
   expectOne({"--single-sided", "light"}, "");
 }

@@ -97,6 +97,16 @@ TEST_F(Turned, KeysOfTiltedRotationsTakeTheShortestWay) {
             render("rotation = [10, 0, 40]\n").texels);
 }
 
+TEST_F(Turned, KeysWithoutAProbeAreNamed) {
+  std::ofstream(path("lamp.toml"))
+      << "model = 'model.gltf'\n[probe]\nrotation_keys = [[0, 10], [2, 20]]\n"
+         "[[light]]\ndirection = [0, 0, 1]\nirradiance = 1\n";
+  const Words words{"render", path("lamp.toml"), "--size", "4x3",          "--samples",
+                    "2",      "--quiet",         "-o",     path("out.exr")};
+  EXPECT_EQ(run(words).error, "chromeball: warning: " + path("lamp.toml") +
+                                  ":3: `probe.rotation_keys` has no effect without a probe\n");
+}
+
 TEST_F(Turned, ScalesMayDifferByChannel) {
   const Image one = render(""), scaled = render("scale = [2, 1, 0.5]\n");
   EXPECT_EQ(scaled.texels, render("", {"--probe-scale", "2,1,0.5"}).texels);

@@ -8,16 +8,19 @@
 namespace chromeball::depth_by_kind_test {
 namespace {
 
-// The radiance inside a closed sphere that emits 1.
-double insideSphere(Material material, const RenderSettings& settings) {
+RenderResult renderInside(Material material, const RenderSettings& settings) {
   Scene scene;
   material.emission = Rgb(1);
   material.doubleSided = true;
   addSphere(scene, addMaterial(scene, material), {0, 0, 0}, -1, 24);
   const Camera camera = Camera::lookAt({0.1f, 0, 0}, {1, 0.2f, 0.3f}, {0, 1, 0}, 0.6f);
   const Probe black(constantProbe({16, 8}, Rgb(0)));
-  return luminance(
-      meanColor(renderScene(scene, camera, black, "importance", settings).film.mean()));
+  return renderScene(scene, camera, black, "importance", settings);
+}
+
+// The radiance inside a closed sphere that emits 1.
+double insideSphere(const Material& material, const RenderSettings& settings) {
+  return luminance(meanColor(renderInside(material, settings).film.mean()));
 }
 
 RenderSettings limited(int diffuse, int specular, int maxDepth = 20) {
@@ -43,6 +46,36 @@ TEST(DepthByKind, SpecularBouncesAreASeriesToo) {
   mirror.roughness = 0;
   for (int depth = 0; depth < 5; ++depth)
     EXPECT_NEAR(insideSphere(mirror, limited(INT_MAX, depth)), 1 + depth, 0.02) << depth;
+}
+
+// d bounces of albedo a find the fraction 1 - a^(d+1) of the light.
+TEST(SlowDepthByKind, TheCutFractionIsEstimatedWithoutBias) {
+  constexpr double kAlbedo = 0.7;
+  const Material matte = lambert(Rgb(float(kAlbedo)));
+  Material metal;
+  metal.baseColor = vec4(vec3(float(kAlbedo)), 1);
+  metal.roughness = 0;
+  for (const int depth : {0, 1, 3}) {
+    const double expected = std::pow(kAlbedo, depth + 1);
+    const auto check = [&](const Material& material, RenderSettings settings, DepthLimit own) {
+      settings.width = settings.height = 16;
+      settings.maxDepth = 100;
+      const DepthCut cut = renderInside(material, settings).depthCut;
+      for (const DepthLimit limit :
+           {DepthLimit::Depth, DepthLimit::Diffuse, DepthLimit::Specular, DepthLimit::Transmission})
+        if (limit != own) {
+          EXPECT_EQ(cut.fraction(limit), 0) << depth;
+        }
+      EXPECT_NEAR(cut.fraction(own) / expected, 1, 0.15) << depth;
+    };
+    check(matte, limited(depth, INT_MAX), DepthLimit::Diffuse);
+    check(matte, limited(depth, 0), DepthLimit::Diffuse);
+    check(metal, limited(INT_MAX, depth), DepthLimit::Specular);
+    check(metal, limited(0, depth), DepthLimit::Specular);
+  }
+  RenderSettings wide = limited(4, 4, 4);  // the limit of all bounces comes first
+  EXPECT_EQ(renderInside(matte, wide).depthCut.fraction(DepthLimit::Diffuse), 0);
+  EXPECT_FALSE(wide.path().limitsKinds());
 }
 
 TEST(DepthByKind, TheOtherLimitDoesNotMatter) {

@@ -58,8 +58,8 @@ TEST(Depth, TransmissiveBodiesHaveTheirOwnLimit) {
   const RenderResult r = renderTop(vase(0), settings);
   EXPECT_LT(meanColor(r.film.mean()).y, 0.85f);
   const DepthCut& cut = r.depthCut;
-  EXPECT_EQ(cut.byDepth, 0);
-  EXPECT_NEAR(cut.fraction(cut.byTransmission), 1 - meanColor(r.film.mean()).y, 0.03);
+  EXPECT_EQ(cut.fraction(DepthLimit::Depth), 0);
+  EXPECT_NEAR(cut.fraction(DepthLimit::Transmission), 1 - meanColor(r.film.mean()).y, 0.03);
 }
 
 // Bounces on other materials count for maxDepth: 0 is visible emission only, 1 adds direct light.
@@ -103,17 +103,37 @@ TEST(Depth, TheCutFractionIsEstimatedWithoutBias) {
     const RenderResult r = renderTop(scene, smallRender(16, 16, 512, depth));
     const DepthCut& cut = r.depthCut;
     const double expected = std::pow(kAlbedo, depth + 1);
-    EXPECT_NEAR(cut.fraction(cut.byDepth) / expected, 1, 0.12) << depth;
-    EXPECT_EQ(cut.byTransmission, 0);
+    EXPECT_NEAR(cut.fraction(DepthLimit::Depth) / expected, 1, 0.12) << depth;
+    EXPECT_EQ(cut.fraction(DepthLimit::Transmission), 0);
     EXPECT_NEAR(meanColor(r.film.mean()).y, (1 - expected) / (1 - kAlbedo), 0.02);
   }
+}
+
+// Half of the view is a room, whose noise draws samples, half an even panel.
+TEST(SlowDepth, TheCutFractionIsThatOfTheImageWhereSamplesAreAdaptive) {
+  Scene scene;
+  addSphere(scene, addMaterial(scene, lambert(Rgb(0.7f))), vec3(0), -5, 16, false);
+  Material lamp = lambert(Rgb(0)), panel = lamp;
+  lamp.emission = Rgb(30), panel.emission = Rgb(1);
+  addQuad(scene, addMaterial(scene, lamp), {-0.5f, 4, -0.5f}, {1, 0, 0}, {0, 0, 1});
+  addQuad(scene, addMaterial(scene, panel), {-2.5f, -2.5f, 1}, {2.5f, 0, 0}, {0, 5, 0});
+  const Camera camera = Camera::lookAt({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 1);
+  double fractions[2];
+  for (const bool adaptive : {false, true}) {
+    RenderSettings settings = smallRender(48, 48, 256, 1);
+    settings.adaptive = adaptive;
+    fractions[adaptive] = renderScene(scene, camera, whiteProbe(), "importance", settings)
+                              .depthCut.fraction(DepthLimit::Depth);
+  }
+  EXPECT_GT(fractions[0], 0.1);
+  EXPECT_NEAR(fractions[1] / fractions[0], 1, 0.1) << fractions[0];
 }
 
 TEST(Depth, NothingIsCutInAConvexOpenScene) {
   Scene scene;
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, 0, 9}, {18, 0, 0}, {0, 0, -18});
   const DepthCut cut = renderTop(scene, smallRender(16, 16, 64, 1)).depthCut;
-  EXPECT_EQ(cut.byDepth, 0);
+  EXPECT_EQ(cut.fraction(DepthLimit::Depth), 0);
   EXPECT_GT(cut.found, 0);
 }
 

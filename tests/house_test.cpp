@@ -193,7 +193,7 @@ TEST(House, IncludesFollowTheTable) {
 
 // Intervals, limits of time and checkpoints are measured by a clock that nobody sets
 // (base/progress.h); a date is written by comparisons and into the headers of images alone.
-// Permissions are those that the sources need, so that the table shows the house as it is.
+// Permissions are those that the sources need, so that the table shows the folders as they are.
 TEST(House, EveryPermissionIsUsed) {
   std::map<std::string, std::set<std::string>> used;
   std::set<std::string> usedLibraries;

@@ -122,6 +122,24 @@ TEST(LightFrom, RefusesAWholeWithoutSuns) {
   EXPECT_FALSE(std::filesystem::exists(folder / "o.exr"));
 }
 
+// What is missing are suns, whatever else lights the scene.
+TEST(LightFrom, SaysThatThereAreNoSuns) {
+  const TemporaryFolder folder;
+  writeSmallModel(folder / "model.gltf");
+  for (const char* lamp :
+       {"", "[[light]]\ntype = 'point'\nposition = [0, 2, 0]\nintensity = 1\n",
+        "[[light]]\ntype = 'disc'\nposition = [0, 2, 0]\ndirection = [0, -1, 0]\n"
+        "radius = 1\nradiance = 1\n"}) {
+    std::ofstream(folder / "scene.toml") << "model = 'model.gltf'\n" << lamp;
+    expectError({"render", folder / "scene.toml", "--light-from", "suns", "-o", folder / "o.exr"},
+                "--light-from: there are no suns, neither in the probe nor in the scene file");
+  }
+  const auto model = sharedData("gltf/LightsPunctualLamp/glTF/LightsPunctualLamp.gltf");
+  if (model)
+    expectError({"render", model->string(), "--light-from", "suns", "-o", folder / "o.exr"},
+                "there are no suns");
+}
+
 // The lamps of the scene file are left out, and no lamp of the model is counted.
 TEST(LightFrom, SunsWithoutAProbeCountNoLamps) {
   const TemporaryFolder folder;

@@ -25,13 +25,14 @@ class Animated : public GltfWriter {
     add("animations", json::object());
   }
 
-  // `values`: the values at the start and at the end.
+  // `values`: the values at the start and at the end; of a cubic spline with their tangents.
   void animate(int node, const char* path, const char* type, const std::vector<float>& values,
                const char* interpolation = "LINEAR") {
     json& animation = root["animations"][0];
+    const int count = std::string_view(interpolation) == "CUBICSPLINE" ? 6 : 2;
     animation["samplers"].push_back({{"input", times_},
                                      {"interpolation", interpolation},
-                                     {"output", accessor(view(values), kFloat, type, 2)}});
+                                     {"output", accessor(view(values), kFloat, type, count)}});
     animation["channels"].push_back({{"sampler", animation["samplers"].size() - 1},
                                      {"target", {{"node", node}, {"path", path}}}});
   }
@@ -120,6 +121,33 @@ TEST(MotionKeys, WarnsOfLampsAndCamerasThatMissTheirWay) {
 }
 
 // A part that turns by whole turns from key to key seems to stand still.
+// A motion that is over before the first of the shutter's own keys, or between two of them.
+TEST(MotionKeys, MotionBetweenKeysIsMotion) {
+  constexpr const char* kIdle = "has no effect without anything that moves";
+  Animated w;
+  const int node = addTriangle(w);
+  w.animate(node, "translation", "VEC3", {0, 0, 0, 0, 1, 0});
+  Animated pulse;  // away and back within its second
+  const int beat = addTriangle(pulse);
+  pulse.animate(beat, "scale", "VEC3", {0, 0, 0, 1, 1, 1, 0, 9, 0, 0, -9, 0, 1, 1, 1, 0, 0, 0},
+                "CUBICSPLINE");
+  Animated still;
+  still.animate(addTriangle(still), "translation", "VEC3", {0, 1, 0, 0, 1, 0});
+  const auto expectMissed = [&](Animated& model, double seconds, uint64_t steps) {
+    const LoadedScene scene = loaded(model.save(), openShutterFor(seconds, steps));
+    EXPECT_TRUE(says(scene, "their way by up to")) << seconds;
+    EXPECT_FALSE(says(scene, kIdle)) << seconds;
+  };
+  expectMissed(pulse, 1, 1);
+  expectMissed(pulse, 100, 8);
+  expectMissed(w, 100, 8);
+  EXPECT_FALSE(says(loaded(w.save(), openShutterFor(1, 8)), "their way"));
+  Settings after = openShutterOfStillModel(1, 8);
+  after.set("model.time", 2.0);
+  EXPECT_TRUE(says(loaded(w.save(), after), kIdle));
+  EXPECT_TRUE(says(loaded(still.save(), openShutterFor(1, 8)), kIdle));
+}
+
 TEST(MotionKeys, WarnsOfAWholeTurnBetweenKeys) {
   Animated w;
   const int node = addTriangle(w);

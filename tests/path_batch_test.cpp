@@ -53,8 +53,8 @@ void expectSame(const NamedScene& named, const Camera& camera, const std::string
   EXPECT_PRED2(close, together.rays.shadow, single.rays.shadow);
   EXPECT_PRED2(close, together.rays.bounce, single.rays.bounce);
   EXPECT_EQ(together.invalid.total(), single.invalid.total());
-  EXPECT_NEAR(together.depthCut.fraction(together.depthCut.byDepth),
-              single.depthCut.fraction(single.depthCut.byDepth), 1e-5);
+  EXPECT_NEAR(together.depthCut.fraction(DepthLimit::Depth),
+              single.depthCut.fraction(DepthLimit::Depth), 1e-5);
   const Image a = together.film.mean(), b = single.film.mean();
   int differing = 0;
   for (int y = 0; y < b.height; ++y)

@@ -160,8 +160,8 @@ TEST(SlowSurfaceLayers, LeaveTheDepthCutAndTheGuidesAsTheyAre) {
     return renderScene(scene, camera, white(), "importance", settings).depthCut;
   };
   const DepthCut with = cutOf(withLayers(256)), without = cutOf(smallRender(8, 8, 256, 3));
-  EXPECT_GT(without.byDepth, 0);
-  EXPECT_NEAR(with.byDepth, without.byDepth, 1e-6 * without.byDepth);
+  EXPECT_GT(without.fraction(DepthLimit::Depth), 0);
+  EXPECT_NEAR(with.fraction(DepthLimit::Depth), without.fraction(DepthLimit::Depth), 1e-6);
   EXPECT_NEAR(with.found, without.found, 1e-6 * without.found);
 
   Scene room;  // with a window, which a guide finds

@@ -119,9 +119,10 @@ constexpr Feature kNotEnvironmentMap{
 constexpr Feature kNotPath{"another integrator than path", "render.integrator", [](const D& d) {
                              return d.settings.integrator != IntegratorKind::Path;
                            }};
-constexpr Feature kNoOcclusion{
-    "no ambient occlusion", "output.aovs",
-    [](const D& d) { return !approximates(d) && !wants(d, "ao") && !wants(d, "bent_normal"); }};
+constexpr Feature kNoOcclusion{"no ambient occlusion", "output.aovs", [](const D& d) {
+                                 return !d.settings.usedOcclusion().ambient && !wants(d, "ao") &&
+                                        !wants(d, "bent_normal");
+                               }};
 constexpr Feature kNoBentNormal{"no layer of bent normals", "output.aovs",
                                 [](const D& d) { return !wants(d, "bent_normal"); }};
 constexpr Feature kNoCache{"no irradiance cache", "render.irradiance_cache",
@@ -209,6 +210,14 @@ constexpr std::array kConflicts = {
              "it prints"},
 };
 
+// Whether the picture or a layer has paths, and of how many bounces.
+bool followsPaths(const D& d) {
+  return !d.settings.usesEnvironmentMaps() || d.settings.wantsAov(Aov::Irradiance);
+}
+int bouncesOf(const D& d) { return followsPaths(d) ? d.settings.path().maxDepth : 0; }
+constexpr std::string_view kManyBounces =
+    "paths of more bounces (--integrator path, --max-depth 2)";
+
 bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
 bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
 
@@ -221,9 +230,19 @@ constexpr std::array kDependences = {
                [](const D& d, const SceneContents&) { return d.camera.shutter.has_value(); }},
     Dependence{"probe.mapping", "a probe's file",
                [](const D& d, const SceneContents&) { return d.probe.file.has_value(); }},
-    Dependence{"probe.rotation", "a probe", hasProbe},
+    Dependence{"probe.rotation", "a probe",
+               [](const D& d, const SceneContents& c) {
+                 return c.hasProbe || d.origins.has("probe.rotation_keys");  // which are named
+               }},
+    Dependence{"probe.rotation_keys", "a probe", hasProbe},
     Dependence{"probe.scale", "a probe", hasProbe},
     Dependence{"lighting.strategy", "a probe", hasProbe},
+    Dependence{"lighting.strategy", "an integrator that samples the probe (path, direct)",
+               [](const D& d, const SceneContents&) {
+                 return followsPaths(d) || strategyOf(d) == "suns";
+               }},
+    Dependence{"lighting.mis", "an integrator that samples the probe (path, direct)",
+               [](const D& d, const SceneContents&) { return followsPaths(d); }},
     Dependence{"lighting.from", "suns",
                [](const D& d, const SceneContents& c) {
                  return d.lighting.from == LightFrom::All || c.hasSuns;
@@ -234,12 +253,34 @@ constexpr std::array kDependences = {
                [](const D& d, const SceneContents& c) {
                  return !d.straightGlassShadows || c.hasStraightGlass;
                }},
+    Dependence{"render.regularize", kManyBounces,
+               [](const D& d, const SceneContents&) {
+                 return !d.settings.regularize || bouncesOf(d) > 1;
+               }},
+    Dependence{"render.irradiance_cache", kManyBounces,
+               [](const D& d, const SceneContents&) {
+                 return !d.settings.cacheError || d.settings.usesCache();
+               }},
+    Dependence{
+        "render.max_depth", "the integrator path",
+        [](const D& d, const SceneContents&) { return bouncesOf(d) == d.settings.maxDepth; }},
+    Dependence{"render.max_diffuse_depth", "a higher limit of all bounces",
+               [](const D& d, const SceneContents&) {
+                 return d.settings.maxDiffuseDepth < d.settings.path().maxDepth;
+               }},
+    Dependence{"render.max_specular_depth", "a higher limit of all bounces",
+               [](const D& d, const SceneContents&) {
+                 return d.settings.maxSpecularDepth < d.settings.path().maxDepth;
+               }},
     Dependence{"render.max_transmission_depth", "bodies of glass",
                [](const D&, const SceneContents& c) { return c.hasBodies; }},
     Dependence{"render.single_sided", "single-sided surfaces",
                [](const D& d, const SceneContents& c) {
                  return d.singleSided == SingleSided::Camera || c.hidesBacks;
                }},
+    Dependence{
+        "composite.ground_reflectance_range", "`[probe] scale = \"plate\"`",
+        [](const D& d, const SceneContents&) { return !d.composite || d.probe.isScaledByPlate; }},
 };
 
 }  // namespace

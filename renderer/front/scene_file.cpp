@@ -78,7 +78,7 @@ void readProbeTurns(const Entry& keys, SceneFile& scene) {
              seconds, scene.probeTurns.back().seconds);
     Entry rotation = key.element(1);
     rotation.setting = findSetting("probe", "rotation");
-    scene.probeTurns.push_back({seconds, rotation.numbers()});
+    scene.probeTurns.push_back({seconds, rotation.numbers(), key.location()});
     parseRotation(scene.probeTurns.back().rotation, rotation.location());
   });
 }
@@ -118,7 +118,10 @@ SceneFile readSceneFile(const std::string& path) {
   });
   forEach(root["source"], [&](const Entry& e) { readSources(e, scene); });
   if (root["composite"]) readComposite(root.section("composite"), scene);
-  if (root["surroundings"]) scene.surroundings = readSurroundings(root.section("surroundings"));
+  if (root["surroundings"]) {
+    scene.origins.set("surroundings", root.section("surroundings").location());
+    scene.surroundings = readSurroundings(root.section("surroundings"));
+  }
   return scene;
 }
 
@@ -225,10 +228,12 @@ void overrideSettings(SceneFile& file, const Settings& over) {
   if (over.has("probe.scale")) file.plateScale.reset();
   file.settings.merge(over);
   applyToModels(over, file);
-  if (!file.probeTurns.empty() && !over.has("probe.rotation"))
+  if (!file.probeTurns.empty() && !over.has("probe.rotation")) {
+    file.origins.set("probe.rotation_keys", file.probeTurns.front().location);
     file.settings.set(
         "probe.rotation",
         rotationAt(file.probeTurns, over.getIfGiven<double>("model.time").value_or(0)));
+  }
   applyShadowCatcher(file);
 }
 

@@ -16,6 +16,7 @@ namespace chromeball {
 struct ProbeTurn {
   double seconds;
   std::vector<double> rotation;  // as the setting "probe.rotation"
+  std::string location;
 };
 
 // The contents of a scene file. Paths are resolved against the scene file's folder.

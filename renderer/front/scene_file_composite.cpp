@@ -4,11 +4,12 @@
 namespace chromeball {
 namespace {
 
-void readGround(const Section& section, CompositeEntry& composite) {
+void readGround(const Section& section, CompositeEntry& composite, Origins& origins) {
   if (const Entry e = section["ground_reflectance"])
     composite.groundReflectance = e.isArray() ? e.vector() : Rgb(float(e.number()));
   if (const Entry e = section["ground_reflectance_range"]) {
     if (!e.isArrayOf(2)) e.mustBe(e.setting->form);
+    origins.set("composite.ground_reflectance_range", e.location());
     composite.groundReflectanceRange = vec2(e.element(0).number(), e.element(1).number());
     if (!(composite.groundReflectanceRange.x <= composite.groundReflectanceRange.y))
       e.mustBe("two numbers, the smaller one first");
@@ -39,7 +40,7 @@ void readComposite(const Section& section, SceneFile& scene) {
   for (const char* key : {"ground_height", "ground_reflectance", "ground_reflectance_range"})
     if (const Entry e = section[key]; e && !hasGround)
       failAt(e.location(), "`{}` needs `ground = true`", key);
-  readGround(section, composite);
+  readGround(section, composite, scene.origins);
 }
 
 SurroundingsEntry readSurroundings(const Section& section) {

@@ -37,7 +37,7 @@ void addComposite(std::vector<Setting>& rows) {
        .form = "a number (grey), or three",
        .range = {.min = 0.001, .max = 1},
        .absent = "0.25",
-       .help = "The ground's base color where `reflectance` does not find it, and on average for "
+       .help = "The ground's base colour where `reflectance` does not find it, and on average for "
                "`[probe] scale = \"plate\"`."});
   add({.key = "ground_reflectance_range",
        .type = Compound,
@@ -64,7 +64,7 @@ void addComposite(std::vector<Setting>& rows) {
            [] {
              return Names{"model", "plate", "flat"};
            },
-       .help = "The local scene's base color: the model's, found from the plate by rendering, or "
+       .help = "The local scene's base colour: the model's, found from the plate by rendering, or "
                "found from the plate by the exact irradiance of a flat local scene."});
   add({.key = "iterations",
        .type = Integer,
@@ -108,7 +108,7 @@ void addSurroundings(std::vector<Setting>& rows) {
        .help = "A box or a sphere that holds the whole model, or a model of the room."});
   point("min", "required for a box", "The box's corner with the smallest coordinates.");
   point("max", "required for a box", "The box's corner with the largest coordinates.");
-  point("center", "required for a sphere", "The sphere's center.");
+  point("center", "required for a sphere", "The sphere's centre.");
   add({.key = "radius",
        .type = Compound,
        .form = "a number",

@@ -49,7 +49,7 @@ void addRender(std::vector<Setting>& rows) {
        .range = kPositive,
        .unit = "seconds",
        .absent = "no limit",
-       .help = "Stops after about this time.",
+       .help = "Stops after about this time, but not before each pixel has 4 samples.",
        .effect = Effect::Limit,
        .renderOnly = true});
   add({.key = "noise",
@@ -232,7 +232,7 @@ void addOutput(std::vector<Setting>& rows) {
                   .type = Choices,
                   .absent = "none",
                   .choices = layers,
-                  .help = "Layers of the .exr beside the color. l_obj, l_noobj, difference and "
+                  .help = "Layers of the .exr beside the colour. l_obj, l_noobj, difference and "
                           "reflectance are those of a composite. light_groups are layers "
                           "light.NAME, the radiance from each source; shadow_mattes are "
                           "shadow.NAME, the factor by which its shadow darkens. ao and "

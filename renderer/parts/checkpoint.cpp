@@ -21,7 +21,7 @@ bool isPlainText(const std::string& text) {
 }  // namespace
 
 void RenderPart::archive(Archive& a) {
-  std::string version = "chromeball " CHROMEBALL_VERSION " 3";
+  std::string version = "chromeball " CHROMEBALL_VERSION " 4";
   const std::string own = version;
   a(version);
   if (version != own)

@@ -150,7 +150,9 @@ class Renderer {
     RenderResult& result = state_.result;
     workers_.forEach([&](PixelWorker& worker) {
       result.rays.add(std::exchange(worker.context.counts, {}));
-      result.depthCut.add(std::exchange(worker.context.depthCut, {}));
+      // Its sums are those of the image only while all pixels have as many samples.
+      const DepthCut cut = std::exchange(worker.context.depthCut, {});
+      if (!state_.allocation) result.depthCut.add(cut);
       result.clamped.add(worker.context.clamp.takeClamped());
       result.invalid.add(std::exchange(worker.invalid, {}));
     });
@@ -175,7 +177,10 @@ void renderPasses(Renderer& renderer, RenderState& state, const Progress& progre
   while (!stop) {
     if (state.finished.empty()) {
       const uint32_t wanted = state.schedule.next(state.done, result.film);
-      if (wanted <= state.done) return progress(1);  // the rest was only an estimate
+      if (wanted <= state.done) {
+        result.overrun = state.schedule.overrun(state.done);
+        return progress(1);  // the rest was only an estimate
+      }
       renderer.startPass(wanted);
     }
     const auto pauses = [&] { return control && control->wantsPause(state); };
@@ -217,6 +222,7 @@ void RenderResult::addTotals(const RenderResult& part) {
   guidedRegions += part.guidedRegions;
   causticFraction = std::max(causticFraction, part.causticFraction);
   interrupted |= part.interrupted;
+  overrun = std::max(overrun, part.overrun);
 }
 
 void RenderResult::copyPixels(const RenderResult& from, const PixelRect& rect) {

@@ -51,6 +51,7 @@ struct RenderResult {
   size_t guidedRegions = 0;   // of the light guide; 0: light samples were not guided
   float causticFraction = 0;  // of bounces in caustics: guided (CausticGuide::fraction())
   bool interrupted = false;
+  double overrun = 0;  // Schedule::overrun() at the end, with what preceded the passes
 
  private:
   RenderResult(const RenderResult& whole, const PixelRect& rect);

@@ -140,6 +140,13 @@ struct RenderSettings {
            wantsAov(Aov::Irradiance);
   }
   bool wantsFeatures() const { return denoise || wantsAov(Aov::Denoise); }
+  // Without bounces there is nothing to approximate.
+  bool usesEnvironmentMaps() const { return usesEnvironment(integrator) && maxDepth > 0; }
+  // With fewer bounces no surface lights another.
+  bool usesCache() const { return cacheError && path().maxDepth > 1; }
+  // Prefiltered maps have no limits of depth, and the light beyond those of cached records is not
+  // known.
+  bool estimatesDepthCut() const { return !usesEnvironmentMaps() && !usesCache(); }
   PathSettings path() const {
     return {.mis = mis,
             .maxDepth = integrator == IntegratorKind::Direct ? std::min(maxDepth, 1) : maxDepth,

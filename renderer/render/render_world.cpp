@@ -41,14 +41,13 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
     return render(SurfaceLayers(picture, tracer, settings.aovs, settings.occlusion), world, camera,
                   limits, rest, stop, training, control);
   };
-  // Without bounces there is nothing to approximate.
-  if (usesEnvironment(settings.integrator) && settings.maxDepth > 0) {
+  if (settings.usesEnvironmentMaps()) {
     assert(aids.environment);
     return withLayers(EnvironmentMapIntegrator(world, lighting, *aids.environment, settings.path(),
                                                settings.usedOcclusion()),
                       nullptr, settings, progress);
   }
-  if (settings.cacheError && settings.path().maxDepth > 1) {  // else no surface lights another
+  if (settings.usesCache()) {
     IrradianceCache own(*settings.cacheError);
     IrradianceCache& cache = aids.cache ? *aids.cache : own;
     const PathSettings paths = withoutDepthCut(settings.path());
@@ -58,8 +57,12 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
         settings.seed, [&](double fraction) { progress(kFillShare * fraction); }, stop);
     GuideTraining training(world, lighting, settings);
     const PathTracer tracer(world, lighting, training.guided(paths));
-    return withLayers(CachedIntegrator(tracer, cache), &training, after(watch.seconds(), settings),
-                      [&](double fraction) { progress(kFillShare + (1 - kFillShare) * fraction); });
+    const double filling = watch.seconds();
+    RenderResult result =
+        withLayers(CachedIntegrator(tracer, cache), &training, after(filling, settings),
+                   [&](double fraction) { progress(kFillShare + (1 - kFillShare) * fraction); });
+    if (result.overrun > 0) result.overrun += filling;
+    return result;
   }
   if (settings.wantsGroups()) {
     const LightGroups groups(world, lighting);

@@ -53,6 +53,11 @@ double Schedule::goalAfter(uint32_t done, const Film& film) {
   return goal;
 }
 
+double Schedule::overrun(uint32_t done) const {
+  const bool isFirst = done <= std::min(kFirstPass, settings_.samples);
+  return settings_.timeLimit && isFirst && seconds() > *settings_.timeLimit ? seconds() : 0;
+}
+
 double Schedule::progress(double samples) const {
   if (settings_.timeLimit) return std::min(1.0, seconds() / *settings_.timeLimit);
   if (!settings_.noiseLimit) return samples / settings_.samples;

@@ -26,6 +26,10 @@ class Schedule {
   // the render is finished.
   uint32_t next(uint32_t done, const Film& film);
 
+  // Seconds so far if the first pass, which is always completed, took longer than the time limit;
+  // else 0.
+  double overrun(uint32_t done) const;
+
   // Whether the samples so far are the pilot of an adaptive render, so that the pass that next()
   // returned last is the first whose samples are allotted by its noise.
   bool endsPilot() const { return endsPilot_; }

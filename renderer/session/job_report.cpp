@@ -45,8 +45,16 @@ json describe(const CompositeReport& report) {
   return j;
 }
 
+// Of the light, by the name of the limit; null where it is not estimated.
+json describe(const DepthCut& cut, const RenderSettings& settings) {
+  if (!settings.estimatesDepthCut()) return nullptr;
+  json j;
+  for (size_t i = 0; i < DepthCut::kLimits; ++i)
+    j[std::string(kDepthLimitNames[i])] = cut.fraction(DepthLimit(i));
+  return j;
+}
+
 json describe(const RenderResult& result) {
-  const DepthCut& cut = result.depthCut;
   return {
       {"samples_per_pixel", result.samples},
       {"adaptive", result.adaptive},
@@ -65,9 +73,6 @@ json describe(const RenderResult& result) {
         {"negative", result.invalid.of(Defect::Negative)}}},
       {"clamped",
        {{"samples", result.clamped.count}, {"light_removed", result.clamped.fractionRemoved()}}},
-      {"depth_cut",
-       {{"max_depth", cut.fraction(cut.byDepth)},
-        {"max_transmission_depth", cut.fraction(cut.byTransmission)}}},
       {"interrupted", result.interrupted},
   };
 }
@@ -103,6 +108,7 @@ json statistics(const LoadedScene& loaded, const JobResult& result, const PhaseS
       {"memory", describe(estimateMemory(loaded))},
   };
   j.update(describe(result.render));
+  j["depth_cut"] = describe(result.render.depthCut, job.settings);
   if (const auto& d = result.denoised)
     j["denoised"] = {{"noise", d->noise}, {"seconds", d->seconds}};
   if (result.composite) j.update(describe(*result.composite));

@@ -55,7 +55,7 @@ SceneContents contentsOf(const LoadedScene& loaded) {
       .hasBodies = hasBodies(scene),
       .hasStraightGlass = hasMaterial([](const Material& m) { return m.straightShadows; }),
       .hidesBacks = hasMaterial([](const Material& m) { return !m.doubleSided; }),
-      .moves = scene.moves || loaded.camera.motion};
+      .moves = loaded.moves || (job.camera.shutter && job.camera.shutter->turn != 0)};
 }
 
 void addMemory(const LoadedScene& loaded, Collector& messages) {

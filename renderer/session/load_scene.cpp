@@ -116,6 +116,7 @@ void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cach
   loaded.view = models.view;
   loaded.camera = models.camera;
   loaded.hasModelLights = models.hasLights;
+  loaded.moves = models.moves;
   loaded.modelWarnings = std::move(models.warnings);
   if (!job.probe.file && !models.scene.environment) checkLit(job, models.scene);
   shareMeshes(loaded.scene, models.scene);
@@ -151,6 +152,8 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
   std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
   if (job.surroundings && !room)
     checkInside(scene, *surroundingsOf(job, models.origin), job.sceneName());
+  if (job.surroundings && !job.probe.file && !job.probe.map && !scene.environment)
+    throwInput("{}: [surroundings] needs a probe", job.origins.of("surroundings"));
   LoadedProbe loaded = loadProbeOf(job, scene);
   Probe probe = probeOf(job, loaded);
   std::optional<ProbeSources> sources = sourcesOf(job, loaded, probe);
@@ -163,6 +166,7 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
                      surroundingsOf(job, models.origin),
                      std::move(room),
                      models.hasLights,
+                     models.moves,
                      models.origin,
                      std::move(sources),
                      std::move(files)};

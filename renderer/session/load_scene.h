@@ -27,6 +27,7 @@ struct LoadedScene {
   std::optional<Surroundings> surroundings;  // the model is inside
   std::unique_ptr<const Room> room;          // null unless the surroundings are a model
   bool hasModelLights = false;               // punctual ones, also if they are off
+  bool moves = false;                        // anything while the shutter is open
   glm::dvec3 origin;                         // of the scene's coordinates in the world, metres
   std::optional<ProbeSources> sources;       // polygons of the probe
   std::vector<std::string> files;            // all that were read; no output may replace one

@@ -2,6 +2,7 @@
 #include "session/open_shutter.h"
 
 #include <algorithm>
+#include <set>
 
 #include "animation/scene_motion.h"
 #include "base/error.h"
@@ -50,6 +51,25 @@ void checkMotionMemory(const RenderDescription& job, const Scene& scene) {
         Remedy{"memory", {}});
 }
 
+// Fractions of the shutter's time at which animations have moved, between which and the keys they
+// may come back; of many, some.
+std::vector<double> fractionsOfChange(const RenderDescription& job, ModelCache& cache) {
+  constexpr size_t kMost = 64;
+  const double seconds = job.camera.shutter->seconds();
+  std::set<double> all;
+  for (const ModelEntry& model : job.models) {
+    GltfChoice choice = model.choice;
+    choice.cache = &cache;
+    for (const double change : animationChanges(model.file, choice, seconds))
+      all.insert(change / seconds);
+  }
+  std::vector<double> some;
+  size_t i = 0;
+  for (const double fraction : all)
+    if (i++ * kMost / std::max(all.size(), kMost) >= some.size()) some.push_back(fraction);
+  return some;
+}
+
 std::string modelOf(const RenderDescription& job) { return job.sceneName(); }
 
 // `halfSteps`: the camera at the keys and half-way between them, from the opening to the closing.
@@ -93,6 +113,10 @@ void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache&
   MotionError error;
   for (int k = 0; k < steps; ++k)
     error.add(placed.scene, modelsAtHalfStep(2 * k + 1), float((k + 0.5) / steps));
+  const std::vector<double> changes = fractionsOfChange(job, cache);
+  for (const double fraction : changes)
+    error.add(placed.scene, modelsAt(job, fraction, placed.origin, cache), float(fraction));
+  placed.moves = placed.scene.moves || !changes.empty();
   moveCamera(*job.camera.shutter, cameras, placed.camera, error);
   warn(error.warnings(modelOf(job), steps));
 }

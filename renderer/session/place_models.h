@@ -42,6 +42,7 @@ struct PlacedModels {
   AutomaticView view;
   glm::dvec3 origin{0};    // of the scene's coordinates in the world, metres
   bool hasLights = false;  // punctual ones of the models, also if they are off
+  bool moves = false;      // anything while the shutter is open, also if no key shows it
   std::vector<std::string> warnings;
 };
 

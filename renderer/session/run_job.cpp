@@ -101,6 +101,12 @@ JobResult renderJob(const LoadedScene& loaded, const PreparedScene& prepared,
   loaded.scene.checkTexels();
   result.render.interrupted |= job.settings.denoisesAtEnd() && !result.denoised;
   result.seconds = watch.lap();
+  if (result.render.overrun > 0)
+    result.messages.push_back(
+        {Message::Kind::Warning,
+         fmt::format(
+             "{}: the first pass, which is always completed, took {:.2g} s, longer than {:g}",
+             job.origins.of("render.time"), result.render.overrun, *job.settings.timeLimit)});
   return result;
 }
 

@@ -15,6 +15,12 @@
 namespace chromeball {
 namespace {
 
+void checkSuns(const RenderDescription& job, bool hasSuns) {
+  if (job.lighting.from == LightFrom::Suns && !hasSuns)
+    throwInput("{}: there are no suns, neither in the probe nor in the scene file",
+               job.origins.of("lighting.from"));
+}
+
 // Throws InputError if the part is to be the suns, and there are none.
 void keepPart(const RenderDescription& job, const Scene& scene, LoadedProbe& loaded) {
   const LightFrom from = job.lighting.from;
@@ -26,9 +32,7 @@ void keepPart(const RenderDescription& job, const Scene& scene, LoadedProbe& loa
     latLong = std::move(extraction.remainder);
     return;
   }
-  if (!loaded.hasSuns && scene.suns.empty())
-    throwInput("{}: there are no suns, neither in the probe nor in the scene file",
-               job.origins.of("lighting.from"));
+  checkSuns(job, loaded.hasSuns || !scene.suns.empty());
   for (size_t i = 0; i < latLong.texels.size(); ++i)
     latLong.texels[i] -= extraction.remainder.texels[i];
 }
@@ -102,6 +106,7 @@ void removeLamps(const RenderDescription& job, Scene& scene) {
 }
 
 void checkLit(const RenderDescription& job, const Scene& scene) {
+  checkSuns(job, !scene.suns.empty());
   const bool lit = !scene.lights.empty() || std::ranges::any_of(job.lamps, [](const Lamp& l) {
     return l.sun || l.ambient;
   }) || std::ranges::any_of(scene.materials, &Material::emits);

@@ -132,6 +132,17 @@ std::string Row::name() const {
   return name;
 }
 
+Row Row::representative() const {
+  Row row = *this;
+  if (usesEnvironment(integrator) && strategy != "suns") row.strategy = "importance";
+  if (integrator == IntegratorKind::Direct) {
+    std::erase(row.modes, Mode::Regularize);
+    if (diffuseDepth > 0) row.diffuseDepth.reset();
+    if (specularDepth > 0) row.specularDepth.reset();
+  }
+  return row;
+}
+
 RenderSettings Row::applied(RenderSettings settings) const {
   settings.adaptive = has(Mode::Adaptive);
   settings.guiding = has(Mode::Guide) ? Guiding::On : Guiding::Off;

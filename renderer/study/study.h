@@ -90,6 +90,9 @@ struct Row {
   bool has(Mode mode) const;
   bool isBiased() const;  // by more than its strategy
   std::string name() const;
+  // The row that stands for all with the same pixels but for their seeds: without what has no
+  // effect with its integrator.
+  Row representative() const;
   // `settings` with these modes, and no others.
   RenderSettings applied(RenderSettings settings) const;
   // The same for a description, with the strategy.

@@ -8,22 +8,57 @@
 #include "transport/path.h"
 
 namespace chromeball {
+namespace {
 
-// Continues one in kInterval of the paths that reach a limit twice with the same random numbers:
+constexpr int kExtraBounces = 256;
+
+int raisedLimit(int limit) { return std::min(limit, INT_MAX - kExtraBounces) + kExtraBounces; }
+
+// More paths reach the limits by kind, and earlier, than the others.
+constexpr uint32_t intervalOf(DepthLimit limit) {
+  return limit == DepthLimit::Diffuse || limit == DepthLimit::Specular ? 256 : 64;
+}
+
+// Whether limits of bounces by kind may leave lobes of the material out. The kind that makes up for
+// multiple scattering of metal, which is diffuse, does not count.
+bool mayBeDiffuse(const Material& m) {
+  return !m.isBody() &&
+         (m.metallic < 1 || m.metallicRoughnessTexture || m.specularGlossiness || m.extended);
+}
+bool mayBeSpecular(const Material& m) {
+  return !m.isBody() && (m.specular > 0 || m.metallic > 0 || m.extended);
+}
+
+}  // namespace
+
+// The limit at which the path loses what its next surface scatters, or some of it.
+std::optional<DepthLimit> PathTracer::reachedLimit(const PathState& state, const Hit& hit) const {
+  if (state.bounces() == settings_.maxDepth) return DepthLimit::Depth;
+  if (limitsKinds_) [[unlikely]] {
+    const Scene& scene = world_.scene;
+    const Material& material = scene.materials[size_t(scene.instances[hit.instance].material)];
+    if (state.diffuse == settings_.maxDiffuseDepth && mayBeDiffuse(material))
+      return DepthLimit::Diffuse;
+    if (state.specular == settings_.maxSpecularDepth && mayBeSpecular(material))
+      return DepthLimit::Specular;
+  }
+  if (state.transmissions == settings_.maxTransmissionDepth) return DepthLimit::Transmission;
+  return {};
+}
+
+// Continues one in intervalOf() of the paths that reach a limit twice with the same random numbers:
 // with the given limits, and with kExtraBounces more bounces. The difference is the light cut off.
-[[gnu::noinline]] void PathTracer::followTwice(PathState& state, const Hit& hit,
+[[gnu::noinline]] void PathTracer::followTwice(PathState& state, const Hit& hit, DepthLimit limit,
                                                PathContext& context) const {
-  constexpr uint32_t kInterval = 64;
-  constexpr int kExtraBounces = 256;
   constexpr uint64_t kPurpose = 0x637574;  // separate random stream
   state.cutIsEstimated = true;
-  if (hash(context.sampler.sampleKey(), kPurpose) % kInterval != 0) return;
+  if (hash(context.sampler.sampleKey(), kPurpose) % intervalOf(limit) != 0) return;
   PathSettings limited = settings_;
   limited.estimateDepthCut = false;
   PathSettings farther = limited;
-  farther.maxDepth = std::min(settings_.maxDepth, INT_MAX - kExtraBounces) + kExtraBounces;
-  farther.maxTransmissionDepth =
-      std::min(settings_.maxTransmissionDepth, INT_MAX - kExtraBounces) + kExtraBounces;
+  for (int PathSettings::*depth : {&PathSettings::maxDepth, &PathSettings::maxTransmissionDepth,
+                                   &PathSettings::maxDiffuseDepth, &PathSettings::maxSpecularDepth})
+    farther.*depth = raisedLimit(settings_.*depth);
 
   PathState rest = state;
   rest.radiance = Rgb(0);
@@ -40,16 +75,13 @@ namespace chromeball {
   context.records = records;
   context.groups = groups;
   context.sampler.startVertex(state.depth);
-  if (std::isfinite(cut))
-    context.depthCut.add(state.bounces() == settings_.maxDepth, kInterval * cut);
+  if (std::isfinite(cut)) context.depthCut.add(limit, intervalOf(limit) * cut);
 }
 
 void PathTracer::estimateDepthCut(PathState& state, const std::optional<Hit>& hit,
                                   PathContext& context) const {
   if (!settings_.estimateDepthCut || !hit || state.cutIsEstimated) return;
-  if (state.bounces() == settings_.maxDepth ||
-      state.transmissions == settings_.maxTransmissionDepth)
-    followTwice(state, *hit, context);
+  if (const auto limit = reachedLimit(state, *hit)) followTwice(state, *hit, *limit, context);
 }
 
 }  // namespace chromeball

@@ -142,7 +142,8 @@ class PathTracer {
   const CausticGuide* guideOf(const PathState& state) const;
   static void noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                          const PathContext& context);
-  void followTwice(PathState& state, const Hit& hit, PathContext& context) const;
+  std::optional<DepthLimit> reachedLimit(const PathState& state, const Hit& hit) const;
+  void followTwice(PathState& state, const Hit& hit, DepthLimit limit, PathContext& context) const;
 
   const World& world_;
   const LightSource& lighting_;

@@ -36,7 +36,8 @@ struct PathSettings {
   // PathContext::shadowsDiffer is set if their transmittances differ.
   RayMask compared = visible;
 
-  bool limitsKinds() const { return maxDiffuseDepth < INT_MAX || maxSpecularDepth < INT_MAX; }
+  // Beyond maxDepth, which counts bounces of both kinds, they limit nothing.
+  bool limitsKinds() const { return maxDiffuseDepth < maxDepth || maxSpecularDepth < maxDepth; }
 };
 
 // MIS weights of light samples and BSDF samples (Veach 1997, section 9.2).

@@ -28,10 +28,9 @@ RenderDescription plannedJob(const BakeOptions& a) {
   if (scene.composite)
     throwInput("{}: a composite cannot be baked; bake its model",
                scene.origins.of("composite.entry"));
-  if (a.what == "ambient-occlusion" && !a.settings.has("probe.file"))
-    scene.lamps.push_back({.ambient = AmbientLamp{}});  // it needs no light of the user's
   dropUnheeded(scene, SceneCommand::Bake);
   Settings settings = a.settings;
+  if (a.light() == BakedLight::AmbientOcclusion) dropLight(scene, settings);
   settings.erase("render.ao_distance");
   return planJob(std::move(scene), settings);
 }

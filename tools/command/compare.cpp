@@ -2,6 +2,7 @@
 // chromeball compare SCENE --strategies a,b,c --samples 1,4,16 -o DIR
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "base/error.h"
 #include "base/json.h"
@@ -73,6 +74,33 @@ std::vector<std::string> resolveStrategies(const std::vector<std::string>& given
   return names;
 }
 
+// The first of the rows with the same pixels as this one; its own name if there is none.
+std::string standIn(const std::string& name, const std::vector<std::string>& rows) {
+  const auto represented = [](const std::string& row) {
+    return rowNamed(row, "--strategies").representative().name();
+  };
+  const auto found = std::ranges::find(rows, represented(name), represented);
+  return found == rows.end() ? name : *found;
+}
+
+// Keeps the first of rows with the same pixels; of the others, a note.
+Messages mergeEqualRows(std::vector<std::string>& rows) {
+  std::vector<std::string> kept;
+  std::map<std::string, std::vector<std::string>> dropped;  // by the row that stays
+  for (const std::string& name : rows) {
+    const std::string first = standIn(name, kept);
+    first == name ? kept.push_back(name) : dropped[first].push_back(name);
+  }
+  rows = kept;
+  Messages notes;
+  for (const auto& [first, others] : dropped)
+    notes.push_back(
+        {Message::Kind::Note,
+         fmt::format("{} {} the same image as {}, which is compared alone", fmt::join(others, ", "),
+                     others.size() == 1 ? "is" : "are", first)});
+  return notes;
+}
+
 void sortUnique(std::vector<Budget>& budgets) {
   std::sort(budgets.begin(), budgets.end());
   budgets.erase(std::unique(budgets.begin(), budgets.end()), budgets.end());
@@ -108,16 +136,18 @@ int planReferenceSamples(const CompareArguments& a, const std::vector<Budget>& b
   return a.referenceSamples.value_or(std::max(kMin, int(std::min(kFactor * maximum, 1e6))));
 }
 
-Study planStudy(const CompareArguments& a) {
+Study planStudy(const CompareArguments& a, Messages& notes) {
   Study study;
   study.folder = a.folder;
   study.strategies = resolveRows(resolveStrategies(a.strategies), a.integrators);
+  notes = mergeEqualRows(study.strategies);
   study.budgets = planBudgets(a);
   if (a.repeats < Study::kMinRepeats)
     throwInput("--repeats: {} is not {} or more", a.repeats, Study::kMinRepeats);
   study.repeats = a.repeats;
-  study.baseline =
-      a.baseline.empty() ? study.strategies.front() : rowNamed(a.baseline, "--baseline").name();
+  study.baseline = a.baseline.empty()
+                       ? study.strategies.front()
+                       : standIn(rowNamed(a.baseline, "--baseline").name(), study.strategies);
   if (std::count(study.strategies.begin(), study.strategies.end(), study.baseline) == 0)
     throwInput("--baseline: `{}` is not among the compared strategies", a.baseline);
   study.referenceFile = a.reference;
@@ -173,7 +203,8 @@ void compare(const CompareArguments& a) {
   scene.composite.reset();
   dropUnheeded(scene, SceneCommand::Compare);
   RenderDescription job = planJob(std::move(scene), a.scene.settings);
-  Study study = planStudy(a);
+  Messages ofRows;
+  Study study = planStudy(a, ofRows);
   const ThreadLimit threads = threadLimit(a.scene.settings);
   const LoadedScene loaded = loadScene(job);
   job = loaded.description;
@@ -191,6 +222,7 @@ void compare(const CompareArguments& a) {
   Messages ofReference;
   if (!study.referenceFile.empty())
     loadReference(study, store, job.settings.width, job.settings.height, &ofReference);
+  print(ofRows, a.scene.quiet());
   print(ofReference, a.scene.quiet());
   print(loaded.messages, a.scene.quiet());
   if (hadComposite)

@@ -75,4 +75,23 @@ void dropUnheeded(SceneFile& scene, SceneCommand command) {
         names.size() == 1 ? "has" : "have", names.size() == 1 ? "it" : "them"));
 }
 
+void dropLight(SceneFile& scene, Settings& options) {
+  std::vector<std::string> names;
+  for (const Setting& setting : settingTable()) {
+    const std::string name = setting.name();
+    if (!name.starts_with("probe.") && !name.starts_with("lighting.") && name != "render.max_depth")
+      continue;
+    if (const auto* given = options.find(name)) names.push_back(given->location);
+    scene.settings.erase(name);
+    options.erase(name);
+  }
+  scene.sources.clear();
+  scene.surroundings.reset();
+  scene.probeTurns.clear();
+  scene.lamps = {{.ambient = AmbientLamp{}}};  // black: no scene needs a light of its own
+  if (!names.empty())
+    scene.warnings.push_back(fmt::format("{} {} no effect on occlusion", fmt::join(names, ", "),
+                                         names.size() == 1 ? "has" : "have"));
+}
+
 }  // namespace chromeball

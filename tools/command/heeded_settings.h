@@ -11,4 +11,8 @@ namespace chromeball {
 // none by accident either, and adds a warning that names the ones that would change an image.
 void dropUnheeded(SceneFile& scene, SceneCommand command);
 
+// Removes all that says how light reaches the models, on which their occlusion does not depend, and
+// adds a warning that names what `options` had of it.
+void dropLight(SceneFile& scene, Settings& options);
+
 }  // namespace chromeball

@@ -53,7 +53,7 @@ struct Reader {
     for (const char* channel : {"R", "G", "B"})
       if (std::ranges::count(file.channels, channel) == 0)
         throwInput("{}: has no channel {}", path, channel);
-    return checked(*findColor(file), "the color", kMaxRadiance);
+    return checked(*findColor(file), "the colour", kMaxRadiance);
   }
 };
 

@@ -148,7 +148,7 @@ void run(const ImageDevelopArguments& arguments) {
   Image& color = input.image.layers.front().image;
   print(inWords(develop(color, settings, &input.depth, input.frame)), false);
   if (!input.otherLayers.empty() && lowerExtension(arguments.out) == ".exr")
-    note(fmt::format("{}: its color alone is developed and written; without the layers {}",
+    note(fmt::format("{}: its colour alone is developed and written; without the layers {}",
                      arguments.in, fmt::join(input.otherLayers, ", ")));
   print(writeInWindow(arguments.out, std::move(input.image), arguments.in, transform), false);
 }

@@ -45,7 +45,7 @@ Image viewOf(const std::string& path, const std::string& layer) {
     const std::vector<std::string> names = layerNames(file);
     const std::vector<std::string_view> known(names.begin(), names.end());
     throwInput("{}: has no layer `{}`; {}", path, layer,
-               known.empty() ? "it has only its color" : didYouMean(layer, known));
+               known.empty() ? "it has only its colour" : didYouMean(layer, known));
   }
   if (isOfIds(layer)) printLegend(*image, readManifest(file.metadata, layer));
   return inDisplayWindow(layerView(layer, *std::move(image)), file.placement, path);
@@ -76,9 +76,9 @@ void addImageViewCommand(Command image) {
                  fmt::format("Tone operator: {}", fmt::join(toneOperatorNames(), ", ")))
       .showsDefault();
   command.addOption("--layer", arguments->layer,
-                    "A layer in place of the color: albedo, normal (-1..1 as 0..1), depth (near "
+                    "A layer in place of the colour: albedo, normal (-1..1 as 0..1), depth (near "
                     "is white), node and "
-                    "material (one color each, printed with its name), variance, samples, ...");
+                    "material (one colour each, printed with its name), variance, samples, ...");
   command.callback([arguments] { run(*arguments); });
 }
 

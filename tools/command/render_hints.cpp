@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "base/file.h"
 #include "why_black.h"
@@ -35,16 +36,33 @@ std::optional<std::string> whyWhite(const LoadedScene& loaded, const RenderResul
   return hint;
 }
 
-void addDepthCut(const std::string& limit, const char* remedy, double fraction,
-                 Messages& messages) {
+bool isOfDirect(DepthLimit limit, const RenderSettings& settings) {
+  return limit == DepthLimit::Depth && settings.path().maxDepth < settings.maxDepth;
+}
+
+void addDepthCuts(const RenderSettings& settings, const DepthCut& cut, Messages& messages) {
   constexpr double kMinFraction = 0.01;
-  if (fraction > kMinFraction)
+  for (size_t i = 0; i < DepthCut::kLimits; ++i) {
+    const DepthLimit limit = DepthLimit(i);
+    const double fraction = cut.fraction(limit);
+    if (!(fraction > kMinFraction)) continue;
+    const char* remedy = isOfDirect(limit, settings) ? "--integrator path" : "a higher one";
     messages.push_back(
         {Message::Kind::Warning, fmt::format("{} cut about {:.2g}% of the light; {} keeps it",
-                                             limit, 100 * fraction, remedy)});
+                                             limitGiven(limit, settings), 100 * fraction, remedy)});
+  }
 }
 
 }  // namespace
+
+std::string limitGiven(DepthLimit limit, const RenderSettings& settings) {
+  if (isOfDirect(limit, settings)) return "--integrator direct";
+  const std::array values = {settings.maxDepth, settings.maxDiffuseDepth, settings.maxSpecularDepth,
+                             settings.maxTransmissionDepth};  // as DepthLimit
+  std::string option(kDepthLimitNames[size_t(limit)]);
+  std::ranges::replace(option, '_', '-');
+  return fmt::format("--{} {}", option, values[size_t(limit)]);
+}
 
 void addExcluded(const RenderResult& result, Messages& messages) {
   const auto warning = [&](std::string text) {
@@ -67,20 +85,11 @@ Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared
   const RenderDescription& job = loaded.description;
   Messages messages;
   addExcluded(result.render, messages);
-  const DepthCut& cut = result.render.depthCut;
-  const RenderSettings& settings = job.settings;
-  constexpr const char* kHigher = "a higher one";
-  if (settings.path().maxDepth < settings.maxDepth)
-    addDepthCut("--integrator direct", "--integrator path", cut.fraction(cut.byDepth), messages);
-  else
-    addDepthCut(fmt::format("--max-depth {}", settings.maxDepth), kHigher,
-                cut.fraction(cut.byDepth), messages);
-  addDepthCut(fmt::format("--max-transmission-depth {}", settings.maxTransmissionDepth), kHigher,
-              cut.fraction(cut.byTransmission), messages);
+  addDepthCuts(job.settings, result.render.depthCut, messages);
   messages.insert(messages.end(), result.messages.begin(), result.messages.end());
   if (job.composite || job.settings.isPart()) return messages;
   if (!result.render.interrupted)
-    if (const auto why = whyBlack(loaded, prepared.world->accel, result.render.film.mean()))
+    if (const auto why = whyBlack(loaded, prepared.world->accel, result.render))
       messages.push_back({Message::Kind::Warning, *why});
   if (const auto why = whyWhite(loaded, result.render))
     messages.push_back({Message::Kind::Note, *why});

@@ -11,6 +11,9 @@ namespace chromeball {
 Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,
                         const JobResult& result);
 
+// The option that sets a limit of depth, as it is typed: "--max-depth 8", "--integrator direct".
+std::string limitGiven(DepthLimit limit, const RenderSettings& settings);
+
 // Only the messages about excluded samples and clamped light.
 void addExcluded(const RenderResult& result, Messages& messages);
 

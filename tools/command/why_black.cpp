@@ -9,6 +9,7 @@
 
 #include "math/icosphere.h"
 #include "probe/solid_angle.h"
+#include "render_hints.h"
 #include "scene/surface.h"
 #include "trace/accel.h"
 
@@ -151,11 +152,44 @@ std::string noneInView(const Scene& scene, const Seen& seen) {
   return "no surface is in view; try another camera";
 }
 
+// The limits that took light which the paths would have found; nearly all, by --clamp. Much of the
+// light may be that of the background.
+std::vector<std::string> limitsOf(const RenderSettings& settings, const RenderResult& result) {
+  constexpr double kLeast = 1e-3, kNearlyAll = 0.95;
+  std::vector<std::string> limits;
+  for (size_t i = 0; i < DepthCut::kLimits; ++i) {
+    const DepthLimit limit = DepthLimit(i);
+    // Of few samples, the estimate may have none.
+    const bool isZero = limit == DepthLimit::Diffuse && settings.maxDiffuseDepth == 0;
+    if (isZero || result.depthCut.fraction(limit) > kLeast)
+      limits.push_back(limitGiven(limit, settings));
+  }
+  if (result.clamped.fractionRemoved() > kNearlyAll)
+    limits.push_back(fmt::format("--clamp {:g}", *settings.clamp));
+  return limits;
+}
+
+// The settings that left light out before anything was rendered.
+std::vector<std::string> removedLight(const LoadedScene& loaded) {
+  const LightingDescription& lighting = loaded.description.lighting;
+  std::vector<std::string> removed;
+  if (lighting.from == LightFrom::Suns) removed.push_back("--light-from suns");
+  if (lighting.from == LightFrom::Rest) removed.push_back("--light-from rest");
+  if (lighting.lamps == 0 && loaded.hasModelLights) removed.push_back("--lights off");
+  return removed;
+}
+
+std::string noLightWith(const std::vector<std::string>& settings) {
+  return fmt::format("no light reaches them with {}; leave {} out", fmt::join(settings, " and "),
+                     settings.size() == 1 ? "it" : "them");
+}
+
 }  // namespace
 
 std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
-                                    const Image& mean) {
+                                    const RenderResult& result) {
   const RenderDescription& job = loaded.description;
+  const Image mean = result.film.mean();
   constexpr float kDark = 1e-4f;  // of the probe's mean
   constexpr double kMax = 0.8, kNearlyAll = 0.95;
   constexpr int kGrid = 48, kFine = 1024;
@@ -169,6 +203,8 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
   if (job.settings.maxDepth == 0 || black < kMax) return std::nullopt;  // at 0, only emitters shine
   const std::string what = fmt::format("{:.0f}% of the visible surfaces are black: ", 100 * black);
   if (job.probe.scale == glm::dvec3(0)) return what + "--probe-scale 0 turns the probe off";
+  if (const auto limits = limitsOf(job.settings, result); !limits.empty())
+    return what + noLightWith(limits);
   const std::vector<Target> lights = lightsOf(loaded);
   const auto behindWalls = std::ranges::count_if(
       seen.black, [&](const Surface& surface) { return isBehindWalls(accel, surface, lights); });
@@ -179,6 +215,8 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
            "single-sided walls, which the camera sees through, block the light; "
            "try --single-sided light, or add lamps with [[light]] in a scene file";
   if (black < kNearlyAll) return std::nullopt;
+  if (const auto removed = removedLight(loaded); !removed.empty())
+    return what + noLightWith(removed);
   if (lights.empty() && job.probe.file)
     return what + "the probe is black; take another, or add lamps with [[light]] in a scene file";
   return what + "no light reaches them; add lamps with [[light]] in a scene file";

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <set>
 
 #include "base/text.h"
 #include "scene/gltf/accessor.h"
@@ -135,6 +137,24 @@ std::vector<double> valueAt(const GltfFile& file, const Track& track, double sec
   return isRotation ? unitRotation(file, track, i, fraction, result, where) : result;
 }
 
+// Beyond rounding.
+bool areDifferent(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr double kRounding = 1e-12;
+  double largest = 0, difference = 0;
+  for (size_t k = 0; k < a.size(); ++k) {
+    largest = std::max({largest, std::fabs(a[k]), std::fabs(b[k])});
+    difference = std::max(difference, std::fabs(a[k] - b[k]));
+  }
+  return difference > kRounding * largest;
+}
+
+// Numbers per key of a channel (readTrack()); 0: of a target that is ignored.
+int componentsOf(const std::string& path) {
+  if (path == "weights") return 1;
+  if (path == "rotation") return 4;
+  return path == "translation" || path == "scale" ? 3 : 0;
+}
+
 }  // namespace
 
 std::string animationNames(const GltfFile& file) {
@@ -177,6 +197,33 @@ void applyAnimation(GltfFile& file, const AnimationTime& when) {
     file.animated[size_t(channel.target_node)] = true;
     target = valueAt(file, track, when.seconds, isRotation, at);
   }
+}
+
+std::vector<double> changesAfter(GltfFile& file, const AnimationTime& when, double seconds) {
+  const size_t index = findAnimation(file, when);
+  const Animation& animation = file.model.animations[index];
+  std::set<double> changes;
+  for (const tinygltf::AnimationChannel& channel : animation.channels) {
+    const int components = componentsOf(channel.target_path);
+    if (channel.target_node == -1 || components == 0) continue;
+    const std::string at = fmt::format("animations[{}].samplers[{}]", index, channel.sampler);
+    const auto& sampler = file.at(animation.samplers, channel.sampler, "samplers", at);
+    const Track track = readTrack(file, sampler, components, at);
+    const bool isRotation = components == 4;
+    const std::vector<double> opening = valueAt(file, track, when.seconds, isRotation, at);
+    const auto addIfOther = [&](double time) {
+      if (time > when.seconds && time < when.seconds + seconds &&
+          areDifferent(valueAt(file, track, time, isRotation, at), opening))
+        changes.insert(time - when.seconds);
+    };
+    for (size_t i = 0; i < track.times.size(); ++i) {
+      const double time = track.times[i];
+      if (i > 0 && track.interpolation == Interpolation::CubicSpline)
+        addIfOther(0.5 * (track.times[i - 1] + time));
+      addIfOther(time);
+    }
+  }
+  return {changes.begin(), changes.end()};
 }
 
 namespace {

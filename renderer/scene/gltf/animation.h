@@ -17,6 +17,9 @@ namespace chromeball {
 // are invalid.
 void applyAnimation(GltfFile& file, const AnimationTime& when);
 
+// As animationChanges() (load_gltf.h), of an open file whose animation applyAnimation() accepts.
+std::vector<double> changesAfter(GltfFile& file, const AnimationTime& when, double seconds);
+
 // The names of the file's animations, for messages: "`Walk`, `Run` and 3 more".
 std::string animationNames(const GltfFile& file);
 

@@ -94,6 +94,10 @@ std::shared_ptr<GltfFile> openedFile(const std::string& path, const GltfChoice& 
   return file;
 }
 
+bool isAnimatedBy(const GltfChoice& choice, const GltfFile& file) {
+  return choice.animation && !(choice.animation->ifAny && file.model.animations.empty());
+}
+
 }  // namespace
 
 bool beginsAsGltf(const std::string& path) {
@@ -107,13 +111,21 @@ bool beginsAsGltf(const std::string& path) {
   return first != std::string::npos && text[first] == '{';
 }
 
+std::vector<double> animationChanges(const std::string& path, const GltfChoice& choice,
+                                     double seconds) {
+  if (!choice.animation) return {};
+  const std::shared_ptr<GltfFile> file = openedFile(path, choice);
+  file->beginLoad();
+  if (!isAnimatedBy(choice, *file)) return {};
+  return changesAfter(*file, *choice.animation, seconds);
+}
+
 Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
                const GltfChoice& choice) {
   const std::shared_ptr<GltfFile> opened = openedFile(path, choice);
   GltfFile& file = *opened;
   file.beginLoad();
-  const bool isAnimated =
-      choice.animation && !(choice.animation->ifAny && file.model.animations.empty());
+  const bool isAnimated = isAnimatedBy(choice, file);
   if (isAnimated) applyAnimation(file, *choice.animation);
   addMissingNodes(file.model);
   const NodeTree tree = readNodes(file, placement, choice.origin);

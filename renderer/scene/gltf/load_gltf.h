@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -46,6 +47,12 @@ struct GltfChoice {
 
 // Whether the file begins like a GLB or like a JSON object.
 bool beginsAsGltf(const std::string& path);
+
+// Times after the one that `choice` shows, in seconds from it and fewer than `seconds`, at which a
+// channel of its animation has another value than then: those of keys, and between the keys of a
+// cubic spline the middles. Ascending; empty without an animation. Throws as loadGltf() does.
+std::vector<double> animationChanges(const std::string& path, const GltfChoice& choice,
+                                     double seconds);
 
 // Reads the default scene of the file (the first if the file names none) and applies `placement` to
 // its roots. Throws InputError ("FILE: reason") if the file is invalid, refers to bytes outside its
