@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages of the command: typing errors, options of other renderers, warnings, notes.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "gltf_writer.h"
@@ -49,6 +51,34 @@ TEST(CommandMessage, TextThatCannotBeWrittenIsAFailure) {
     const int status = std::system(line.c_str());
     EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 1) << words;
     EXPECT_EQ(fileContents(error).find("chromeball: standard output: "), 0u) << words;
+  }
+}
+
+// The file is the same, and so is the status, on full disks, closed streams and pipes that nobody
+// reads. A closed stream's number must not become that of the file.
+TEST_F(SlowCommandMessage, OneThatCannotBeWrittenIsLostAndTheWorkGoesOn) {
+  const std::string model = w_.save(), image = folder_ / "a.pfm", left = folder_ / "status";
+  const auto statusOf = [&](const std::string& words, const std::string& streams) {
+    std::filesystem::remove(image), std::filesystem::remove(left);
+    const std::string line =
+        fmt::format("(sleep 0.1; {} {}; echo $? >{}) {}", kCommand, words, left, streams);
+    EXPECT_EQ(std::system(line.c_str()), 0);
+    return fileContents(left);
+  };
+  const std::string render = fmt::format("render {} --probe {} --size 4x4 --samples 2 -o {}", model,
+                                         folder_ / "probe.exr", image);
+  ASSERT_EQ(statusOf(render, ">/dev/null 2>&1"), "0\n");
+  const std::string whole = fileContents(image);
+  for (const char* streams : {">/dev/null 2>/dev/full", ">/dev/null 2>&-", "<&- >/dev/null 2>&-",
+                              "2>&1 >/dev/null | :"}) {
+    EXPECT_EQ(statusOf(render, streams), "0\n") << streams;
+    EXPECT_EQ(fileContents(image), whole) << streams;
+    EXPECT_EQ(statusOf("probe info " + (folder_ / "probe.exr"), streams), "0\n") << streams;
+    EXPECT_EQ(statusOf("render " + (folder_ / "none.gltf"), streams), "2\n") << streams;
+  }
+  for (const char* streams : {">&- 2>&-", ">/dev/full 2>/dev/full"}) {
+    EXPECT_EQ(statusOf(render, streams), "1\n") << streams;
+    EXPECT_EQ(fileContents(image), whole) << streams;
   }
 }
 

@@ -68,6 +68,35 @@ TEST(GltfAnimation, StepAndLinear) {
   }
 }
 
+// Keys are floats, of which about half are later than the frame's time, which is a double. Some
+// programs multiply by the time of a frame in floats.
+TEST(GltfAnimation, AKeyIsReachedAtTheTimeOfItsFrame) {
+  constexpr int kFrames = 100;
+  for (const double fps : {24.0, 25.0, 30.0, 23.976, 1e9}) {
+    std::vector<float> divided, multiplied, values;
+    for (int n = 0; n < kFrames; ++n) {
+      divided.push_back(float(n / fps));
+      multiplied.push_back(float(n) * float(1 / fps));
+      values.insert(values.end(), {float(n), 0, 0});
+    }
+    for (const std::vector<float>& times : {divided, multiplied}) {
+      GltfWriter w;
+      addTriangle(w);
+      animate(w, 0, "translation", "STEP", scalars(w, times), w.vec3s(values));
+      for (int n = 1; n < kFrames; n += 9)
+        EXPECT_EQ(origin(at(w, n / fps)).x, n) << fps << " frames per second";
+      EXPECT_EQ(origin(at(w, 10.99 / fps)).x, 10);
+    }
+  }
+}
+
+// Two linear keys at one time are a jump; a time just below it has the state after it.
+TEST(GltfAnimation, AJumpOfLinearKeysIsReachedToo) {
+  const std::vector<float> values{0, 0, 0, 1, 0, 0, 5, 0, 0, 6, 0, 0};
+  EXPECT_EQ(translated("LINEAR", {0, 0.1f, 0.1f, 1}, values, 0.1).x, 5);
+  EXPECT_NEAR(translated("LINEAR", {0, 0.1f, 0.1f, 1}, values, 0.0999).x, 0.999, 1e-5);
+}
+
 // A Hermite spline with the values and tangents of a cubic is that cubic.
 TEST(GltfAnimation, CubicSplineOfACubicIsExact) {
   const auto cubic = [](double t) { return ((t - 3) * t + 0.5) * t + 2; };

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "base/text.h"
 #include "scene/gltf/accessor.h"
@@ -109,13 +111,19 @@ std::vector<double> unitRotation(const GltfFile& file, const Track& track, size_
   return {q.x, q.y, q.z, q.w};
 }
 
+// Whether `seconds` is before the key. Of a frame's time, which is a double, the key is a rounded
+// one: N * (1 / 24) in floats exceeds the double N / 24 by up to 1.5 units in the last place.
+bool isBefore(double seconds, float key) {
+  constexpr double kRounding = 2 * double(std::numeric_limits<float>::epsilon());
+  return key - seconds > kRounding * std::fabs(key);
+}
+
 std::vector<double> valueAt(const GltfFile& file, const Track& track, double seconds,
                             bool isRotation, const std::string& where) {
   const auto& times = track.times;
-  const auto after = std::upper_bound(times.begin(), times.end(), seconds,
-                                      [](double t, float key) { return t < key; });
+  const auto after = std::upper_bound(times.begin(), times.end(), seconds, isBefore);
   const size_t i = after == times.begin() ? 0 : size_t(after - times.begin()) - 1;
-  double fraction = 0;  // position between keys i and i + 1
+  double fraction = 0;  // position between keys i and i + 1; below 0 within the rounding of key i
   if (after != times.begin() && after != times.end())
     fraction = (seconds - times[i]) / (double(times[i + 1]) - times[i]);
 
