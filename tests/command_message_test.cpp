@@ -104,6 +104,8 @@ TEST_F(SlowCommandMessage, OptionsOfOtherRenderersGetASuggestion) {
 
 TEST_F(SlowCommandMessage, InvalidNumbersAreQuoted) {
   EXPECT_EQ(render({"--noise", "30%"}).status, 0);
+  for (const char* noise : {"1e-320", "4.9e-324", "1.7976931348623157e308"})
+    EXPECT_EQ(render({"--noise", noise}).status, 0) << noise;
   const auto expectInputError = [&](const Words& words, const char* reason) {
     Words all{"render", w_.save()};
     all.insert(all.end(), words.begin(), words.end());
@@ -113,6 +115,24 @@ TEST_F(SlowCommandMessage, InvalidNumbersAreQuoted) {
   expectInputError({"--samples", "many"}, "--samples: `many` is not a whole number from 1 to");
   expectInputError({"--samples", "1.5"}, "--samples: `1.5` is not a whole number from 1 to");
   expectInputError({"--seed", "-1"}, "--seed: `-1` is not a whole number, 0 or more");
+}
+
+// In decimal, in all commands, whether they are settings or not.
+TEST_F(SlowCommandMessage, NumbersAreReadAlike) {
+  const std::string probe = folder_ / "probe.exr", out = folder_ / "out";
+  for (const char* number : {"0x10", "1e", " 5", "5 ", "true", "5s", "--5", "0b1"}) {
+    const std::string quoted = fmt::format("`{}` is not a", number);
+    const auto value = [&](const char* option) { return fmt::format("{}={}", option, number); };
+    expectError({"render", w_.save(), value("--samples")}, quoted);
+    expectError({"compare", w_.save(), value("--samples"), "-o", out}, quoted);
+    expectError({"compare", w_.save(), value("--repeats"), "-o", out}, quoted);
+    expectError({"compare", w_.save(), value("--times"), "-o", out}, quoted);
+    expectError({"image", "view", probe, out + ".png", value("--exposure")}, quoted);
+    expectError({"basis", w_.save(), "-o", out + ".glb", value("--clusters")}, quoted);
+  }
+  // Not octal; the first is refused for its range.
+  expectError({"basis", w_.save(), "-o", out + ".glb", "--vectors", "0257"}, "from 0 to 256");
+  EXPECT_EQ(runCommand({"image", "view", probe, out + ".png", "--exposure", "+1e-60"}).status, 0);
 }
 
 TEST_F(SlowCommandMessage, OptionsTakeOneValue) {

@@ -154,6 +154,27 @@ TEST(GltfAnimation, MorphWeights) {
   EXPECT_NEAR(glm::distance(origin(at(w, 0.5)), vec3(0.5f, 1, 0)), 0, 1e-6);
 }
 
+// Only those: the others keep their values, which is said where the target has a weight.
+TEST(GltfAnimation, MorphTargetsMovePositionsNormalsAndTangents) {
+  for (const char* name : {"COLOR_0", "TEXCOORD_0"})
+    for (const float weight : {0.0f, 1.0f}) {
+      GltfWriter w;
+      const int moved = w.vec3s({1, 0, 0, 1, 0, 0, 1, 0, 0});
+      json target;
+      target["POSITION"] = target[name] = moved;
+      json primitive;
+      primitive["targets"].push_back(target);
+      const int node = addTriangle(w, primitive);
+      w.root["nodes"][size_t(node)]["weights"].push_back(weight);
+      EXPECT_EQ(origin(w.load()).x, weight);
+      ASSERT_EQ(w.warnings.size(), weight > 0 ? 1u : 0u) << name;
+      const std::string said = weight > 0 ? w.warnings[0] : "";
+      EXPECT_EQ(said.find(std::string("ignored: ") + name + " of morph targets") != said.npos,
+                weight > 0)
+          << said;
+    }
+}
+
 // A skin follows its joints, and so do its normals.
 TEST(GltfAnimation, SkinsFollowTheirJoints) {
   GltfWriter w;

@@ -24,8 +24,8 @@ struct PngColor {
 };
 
 // By the chunk cICP, else by gAMA and cHRM, which sRGB overrides; they approximate an ICC profile
-// (iCCP), which is not read. Throws std::runtime_error for a cICP whose samples cannot be decoded
-// here, such as those of PQ and HLG.
+// (pngProfile()), which has precedence but is not applied. Throws std::runtime_error for a cICP
+// whose samples cannot be decoded here, such as those of PQ and HLG.
 PngColor pngColor(std::span<const uint8_t> file);
 
 }  // namespace chromeball

@@ -203,6 +203,14 @@ void addDisplacements(GltfFile& file, const std::map<std::string, int>& target, 
     for (int k = 0; k < 3; ++k) array[i][k] += float(weight) * displacements[i][k];
 }
 
+// Colours and texture coordinates may have displacements too (glTF 2.0, 3.7.2.2).
+void warnOfUnmovedAttributes(GltfFile& file, const std::map<std::string, int>& target) {
+  for (const auto& [name, accessor] : target)
+    if (name.starts_with("COLOR_") || name.starts_with("TEXCOORD_"))
+      file.warnOnce(fmt::format("ignored: {} of morph targets; it keeps its unmorphed values",
+                                printableName(name)));
+}
+
 // The blended joint matrix of every vertex.
 std::vector<glm::dmat4> blendJoints(GltfFile& file, const tinygltf::Primitive& primitive,
                                     std::span<const glm::dmat4> joints, const std::string& where,
@@ -248,6 +256,7 @@ void applyMorphTargets(GltfFile& file, const tinygltf::Primitive& primitive,
     if (weights[i] == 0) continue;
     if (!std::isfinite(weights[i])) file.fail("{}: morph weight {} is not finite", where, i);
     const std::string target = fmt::format("{}.targets[{}]", where, i);
+    warnOfUnmovedAttributes(file, primitive.targets[i]);
     addDisplacements(file, primitive.targets[i], "POSITION", weights[i], target, mesh.positions);
     addDisplacements(file, primitive.targets[i], "NORMAL", weights[i], target, mesh.normals);
     addDisplacements(file, primitive.targets[i], "TANGENT", weights[i], target, mesh.tangents);
