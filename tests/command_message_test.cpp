@@ -104,7 +104,7 @@ TEST_F(SlowCommandMessage, OptionsOfOtherRenderersGetASuggestion) {
 
 TEST_F(SlowCommandMessage, InvalidNumbersAreQuoted) {
   EXPECT_EQ(render({"--noise", "30%"}).status, 0);
-  for (const char* noise : {"1e-320", "4.9e-324", "1.7976931348623157e308"})
+  for (const char* noise : {"1e-320", "4.9e-324"})
     EXPECT_EQ(render({"--noise", noise}).status, 0) << noise;
   const auto expectInputError = [&](const Words& words, const char* reason) {
     Words all{"render", w_.save()};
