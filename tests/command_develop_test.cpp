@@ -108,6 +108,20 @@ TEST(CommandDevelop, TheHeaderHasWhatWasDone) {
   EXPECT_FALSE(readImageFile(once).metadata.contains("developed"));
 }
 
+// The attribute says how a map is turned: no file of ours has it.
+TEST(CommandDevelop, EnvmapIsNotKept) {
+  const TemporaryFolder folder;
+  const std::string in = folder / "in.exr", out = folder / "out.exr";
+  writeLamp(in, {{kEnvmapAttribute, std::string(kEnvmapLatLong)}, {"owner", std::string("me")}});
+  const CommandResult result = run({in, out, "--clip", "1"});
+  EXPECT_NE(result.error.find("its `envmap` attribute, which puts +Z in the centre, is not kept"),
+            std::string::npos)
+      << result.error;
+  EXPECT_FALSE(readExrMetadata(out).contains(kEnvmapAttribute));
+  EXPECT_TRUE(readExrMetadata(out).contains("owner"));
+  EXPECT_EQ(run({in, folder / "out.png"}).error, "");
+}
+
 TEST(CommandDevelop, InfinityIsClipped) {
   const TemporaryFolder folder;
   Image image = filled(4, 4, 3, 0.5f);

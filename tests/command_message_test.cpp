@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages of the command: typing errors, options of other renderers, warnings, notes.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "gltf_writer.h"
@@ -52,6 +54,34 @@ TEST(CommandMessage, TextThatCannotBeWrittenIsAFailure) {
   }
 }
 
+// The file is the same, and so is the status, on full disks, closed streams and pipes that nobody
+// reads. A closed stream's number must not become that of the file.
+TEST_F(SlowCommandMessage, OneThatCannotBeWrittenIsLostAndTheWorkGoesOn) {
+  const std::string model = w_.save(), image = folder_ / "a.pfm", left = folder_ / "status";
+  const auto statusOf = [&](const std::string& words, const std::string& streams) {
+    std::filesystem::remove(image), std::filesystem::remove(left);
+    const std::string line =
+        fmt::format("(sleep 0.1; {} {}; echo $? >{}) {}", kCommand, words, left, streams);
+    EXPECT_EQ(std::system(line.c_str()), 0);
+    return fileContents(left);
+  };
+  const std::string render = fmt::format("render {} --probe {} --size 4x4 --samples 2 -o {}", model,
+                                         folder_ / "probe.exr", image);
+  ASSERT_EQ(statusOf(render, ">/dev/null 2>&1"), "0\n");
+  const std::string whole = fileContents(image);
+  for (const char* streams : {">/dev/null 2>/dev/full", ">/dev/null 2>&-", "<&- >/dev/null 2>&-",
+                              "2>&1 >/dev/null | :"}) {
+    EXPECT_EQ(statusOf(render, streams), "0\n") << streams;
+    EXPECT_EQ(fileContents(image), whole) << streams;
+    EXPECT_EQ(statusOf("probe info " + (folder_ / "probe.exr"), streams), "0\n") << streams;
+    EXPECT_EQ(statusOf("render " + (folder_ / "none.gltf"), streams), "2\n") << streams;
+  }
+  for (const char* streams : {">&- 2>&-", ">/dev/full 2>/dev/full"}) {
+    EXPECT_EQ(statusOf(render, streams), "1\n") << streams;
+    EXPECT_EQ(fileContents(image), whole) << streams;
+  }
+}
+
 TEST_F(SlowCommandMessage, OptionsOfOtherRenderersGetASuggestion) {
   for (const auto& [theirs, ours] :
        std::vector<std::pair<std::string, std::string>>{{"--spp", "--samples"},
@@ -74,6 +104,8 @@ TEST_F(SlowCommandMessage, OptionsOfOtherRenderersGetASuggestion) {
 
 TEST_F(SlowCommandMessage, InvalidNumbersAreQuoted) {
   EXPECT_EQ(render({"--noise", "30%"}).status, 0);
+  for (const char* noise : {"1e-320", "4.9e-324"})
+    EXPECT_EQ(render({"--noise", noise}).status, 0) << noise;
   const auto expectInputError = [&](const Words& words, const char* reason) {
     Words all{"render", w_.save()};
     all.insert(all.end(), words.begin(), words.end());
@@ -83,6 +115,24 @@ TEST_F(SlowCommandMessage, InvalidNumbersAreQuoted) {
   expectInputError({"--samples", "many"}, "--samples: `many` is not a whole number from 1 to");
   expectInputError({"--samples", "1.5"}, "--samples: `1.5` is not a whole number from 1 to");
   expectInputError({"--seed", "-1"}, "--seed: `-1` is not a whole number, 0 or more");
+}
+
+// In decimal, in all commands, whether they are settings or not.
+TEST_F(SlowCommandMessage, NumbersAreReadAlike) {
+  const std::string probe = folder_ / "probe.exr", out = folder_ / "out";
+  for (const char* number : {"0x10", "1e", " 5", "5 ", "true", "5s", "--5", "0b1"}) {
+    const std::string quoted = fmt::format("`{}` is not a", number);
+    const auto value = [&](const char* option) { return fmt::format("{}={}", option, number); };
+    expectError({"render", w_.save(), value("--samples")}, quoted);
+    expectError({"compare", w_.save(), value("--samples"), "-o", out}, quoted);
+    expectError({"compare", w_.save(), value("--repeats"), "-o", out}, quoted);
+    expectError({"compare", w_.save(), value("--times"), "-o", out}, quoted);
+    expectError({"image", "view", probe, out + ".png", value("--exposure")}, quoted);
+    expectError({"basis", w_.save(), "-o", out + ".glb", value("--clusters")}, quoted);
+  }
+  // Not octal; the first is refused for its range.
+  expectError({"basis", w_.save(), "-o", out + ".glb", "--vectors", "0257"}, "from 0 to 256");
+  EXPECT_EQ(runCommand({"image", "view", probe, out + ".png", "--exposure", "+1e-60"}).status, 0);
 }
 
 TEST_F(SlowCommandMessage, OptionsTakeOneValue) {

@@ -289,6 +289,49 @@ TEST(ExrFiles, PrimariesAreConverted) {
   EXPECT_EQ(readImage(path).rgb(0, 0), Rgb(0.1f, 1e10f, 1e-8f));
 }
 
+// Of what has none, such as luminance alone, the texels stay, and nothing is said.
+TEST(ExrFiles, PrimariesAreThoseOfThreeChannels) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  using V = Imath::V2f;
+  const Imf::Chromaticities ap0(V(0.7347f, 0.2653f), V(0, 1), V(0.0001f, -0.077f),
+                                V(0.32168f, 0.33767f));
+  const auto messages = [&](const Part& part) {
+    writeParts(path, {part}, {}, ap0);
+    return readImageFile(path).messages.size();
+  };
+  Part grey{"", {{"Y", 0.5f}}};
+  EXPECT_EQ(messages(grey), 0u);
+  EXPECT_EQ(readImage(path).rgb(0, 0), Rgb(0.5f));
+  EXPECT_EQ(messages({"", {{"Y", 0.5f}, {"N.R", 0}, {"N.G", 0}, {"N.B", 0}}}), 0u) << "normals";
+  EXPECT_EQ(messages({"", {{"Y", 1}, {"albedo.R", 1}, {"albedo.G", 1}, {"albedo.B", 1}}}), 1u);
+  EXPECT_EQ(messages(colored("", Rgb(1))), 1u);
+}
+
+// As OpenEXR converts them to floats.
+TEST(ExrFiles, IntegersKeepTheirNumbers) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  const std::vector<uint32_t> numbers = {0, 1, 5, 1 << 20, 4294967295u, 7, 8, 9};
+  Imf::Header header(4, 2);
+  header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+  header.channels().insert("node", Imf::Channel(Imf::UINT));
+  std::vector<float> grey(8, 0.25f);
+  Imf::FrameBuffer buffer;
+  buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(grey.data()), 4, 16));
+  buffer.insert(
+      "node", Imf::Slice(Imf::UINT,
+                         const_cast<char*>(reinterpret_cast<const char*>(numbers.data())), 4, 16));
+  {
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(2);
+  }
+  const ImageFile file = readImageFile(path);
+  EXPECT_EQ(findLayer(file, "node")->texels, std::vector<float>(numbers.begin(), numbers.end()));
+  EXPECT_EQ(findColor(file)->rgb(3, 1), Rgb(0.25f));
+}
+
 TEST(ExrFiles, DegeneratePrimariesAreRefused) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.exr";

@@ -68,6 +68,35 @@ TEST(GltfAnimation, StepAndLinear) {
   }
 }
 
+// Keys are floats, of which about half are later than the frame's time, which is a double. Some
+// programs multiply by the time of a frame in floats.
+TEST(GltfAnimation, AKeyIsReachedAtTheTimeOfItsFrame) {
+  constexpr int kFrames = 100;
+  for (const double fps : {24.0, 25.0, 30.0, 23.976, 1e9}) {
+    std::vector<float> divided, multiplied, values;
+    for (int n = 0; n < kFrames; ++n) {
+      divided.push_back(float(n / fps));
+      multiplied.push_back(float(n) * float(1 / fps));
+      values.insert(values.end(), {float(n), 0, 0});
+    }
+    for (const std::vector<float>& times : {divided, multiplied}) {
+      GltfWriter w;
+      addTriangle(w);
+      animate(w, 0, "translation", "STEP", scalars(w, times), w.vec3s(values));
+      for (int n = 1; n < kFrames; n += 9)
+        EXPECT_EQ(origin(at(w, n / fps)).x, n) << fps << " frames per second";
+      EXPECT_EQ(origin(at(w, 10.99 / fps)).x, 10);
+    }
+  }
+}
+
+// Two linear keys at one time are a jump; a time just below it has the state after it.
+TEST(GltfAnimation, AJumpOfLinearKeysIsReachedToo) {
+  const std::vector<float> values{0, 0, 0, 1, 0, 0, 5, 0, 0, 6, 0, 0};
+  EXPECT_EQ(translated("LINEAR", {0, 0.1f, 0.1f, 1}, values, 0.1).x, 5);
+  EXPECT_NEAR(translated("LINEAR", {0, 0.1f, 0.1f, 1}, values, 0.0999).x, 0.999, 1e-5);
+}
+
 // A Hermite spline with the values and tangents of a cubic is that cubic.
 TEST(GltfAnimation, CubicSplineOfACubicIsExact) {
   const auto cubic = [](double t) { return ((t - 3) * t + 0.5) * t + 2; };
@@ -123,6 +152,27 @@ TEST(GltfAnimation, MorphWeights) {
   animate(w, 0, "weights", "CUBICSPLINE", scalars(w, {0, 2}),
           scalars(w, {7, 7, 0, 0, 1, 2, 1, 2, 2, 4, 7, 7}));  // slopes of 1 and 2 per second
   EXPECT_NEAR(glm::distance(origin(at(w, 0.5)), vec3(0.5f, 1, 0)), 0, 1e-6);
+}
+
+// Only those: the others keep their values, which is said where the target has a weight.
+TEST(GltfAnimation, MorphTargetsMovePositionsNormalsAndTangents) {
+  for (const char* name : {"COLOR_0", "TEXCOORD_0"})
+    for (const float weight : {0.0f, 1.0f}) {
+      GltfWriter w;
+      const int moved = w.vec3s({1, 0, 0, 1, 0, 0, 1, 0, 0});
+      json target;
+      target["POSITION"] = target[name] = moved;
+      json primitive;
+      primitive["targets"].push_back(target);
+      const int node = addTriangle(w, primitive);
+      w.root["nodes"][size_t(node)]["weights"].push_back(weight);
+      EXPECT_EQ(origin(w.load()).x, weight);
+      ASSERT_EQ(w.warnings.size(), weight > 0 ? 1u : 0u) << name;
+      const std::string said = weight > 0 ? w.warnings[0] : "";
+      EXPECT_EQ(said.find(std::string("ignored: ") + name + " of morph targets") != said.npos,
+                weight > 0)
+          << said;
+    }
 }
 
 // A skin follows its joints, and so do its normals.

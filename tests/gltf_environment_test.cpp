@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light probes in glTF files (EXT_lights_image_based).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "gltf_writer.h"
@@ -97,6 +98,31 @@ TEST(GltfEnvironment, AlphaDividesAndIntensityMultiplies) {
   light(w)["intensity"] = 3;
   expectRadiance(
       w.load(), [](const vec3& d) { return 15.0f * colors(d); }, 0.45f);
+}
+
+// Faces are refused by their headers: these have no texels.
+TEST(GltfEnvironment, SizesAreCheckedBeforeFacesAreDecoded) {
+  for (const auto& [width, height] : {std::pair<uint8_t, uint8_t>{16, 16}, {4, 2}, {2, 4}}) {
+    GltfWriter w;
+    addEnvironment(w);
+    std::vector<uint8_t> png = {0x89, 'P', 'N',    'G', '\r', '\n', 0x1a, '\n', 0,     0,
+                                0,    13,  'I',    'H', 'D',  'R',  0,    0,    width, 0,
+                                0,    0,   height, 0,   8,    2,    0,    0,    0};
+    uint32_t checksum = ~0u;  // of the header (ISO/IEC 15948, annex D)
+    for (size_t i = 12; i < png.size(); ++i) {
+      checksum ^= png[i];
+      for (int k = 0; k < 8; ++k) checksum = checksum >> 1 ^ (checksum & 1 ? 0xedb88320u : 0);
+    }
+    for (int shift = 24; shift >= 0; shift -= 8) png.push_back(uint8_t(~checksum >> shift));
+    png.insert(png.end(), {0, 0, 0x40, 0, 'I', 'D', 'A', 'T'});
+    png.resize(1 << 14);
+    w.write("face0.png", png);
+    const std::string error = w.errorMessage();
+    EXPECT_NE(error.find(fmt::format("is {} x {}; the face of an environment must be square",
+                                     256 * width, 256 * height)),
+              std::string::npos)
+        << error;
+  }
 }
 
 TEST(GltfEnvironment, RotationIsApplied) {

@@ -409,6 +409,10 @@ TEST(ImageHeaders, NumbersBeyondRgbeAreCounted) {
   has(2, "3.33% of the channels are NaN or infinite, and become 0");
   EXPECT_EQ(readImage(folder / "a.hdr").rgb(1, 0).x, kMaxRgbe);
   EXPECT_TRUE(writeImage(folder / "a.exr", image).empty());
+  image.setRgb(4, 1, Rgb(std::numeric_limits<float>::infinity(), 0, 0));  // is white
+  const Messages ofPng = writeImage(folder / "a.png", image);
+  ASSERT_EQ(ofPng.size(), 2u);
+  EXPECT_NE(ofPng[1].text.find("3.33% of the channels are NaN, and become 0"), std::string::npos);
 }
 
 // Light beyond alpha is lost in a .png where nothing covers the background.

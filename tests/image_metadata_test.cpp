@@ -8,8 +8,11 @@
 #include "base/error.h"
 #include "exif_block.h"
 #include "gltf_writer.h"
+#include "icc_file.h"
 #include "image/io/decode_image.h"
+#include "image/io/icc_profile.h"
 #include "image/io/read_image.h"
+#include "image/tonemap.h"
 #include "instrumented.h"
 #include "run_command.h"
 #include "shared_data.h"
@@ -190,34 +193,152 @@ TEST(ImageMetadata, DamagedProfilesAreIgnored) {
   EXPECT_EQ(decodeImage(png, "a").texels8, decodeImage(kPng, "a").texels8);
 }
 
-// A profile that is not applied is reported, unless it is known to be sRGB's.
-TEST(ImageMetadata, ProfilesThatAreNotAppliedAreNamed) {
-  const TemporaryFolder folder;
-  const auto isSaid = [&](const std::string& name, const Bytes& bytes,
-                          IntegerTexels integers = IntegerTexels::Srgb) {
-    const Messages messages = readImageFile(saved(folder / name, bytes), integers).messages;
-    return std::ranges::any_of(messages, [](const Message& message) {
+// The bytes as one stored block (RFC 1950 and 1951).
+Bytes zlibOf(const Bytes& data) {
+  uint32_t a = 1, b = 0;
+  for (const uint8_t byte : data) a = (a + byte) % 65521, b = (b + a) % 65521;
+  const auto little = [](uint64_t n) { return Bytes{uint8_t(n), uint8_t(n >> 8)}; };
+  return joined({{0x78, 1, 1},
+                 little(data.size()),
+                 little(~data.size()),
+                 data,
+                 bigEndian(uint64_t(b) << 16 | a, 4)});
+}
+
+Bytes iccpChunk(const Bytes& profile, const std::string& name = "sRGB") {
+  return chunk("iCCP", joined({text(name), {0, 0}, zlibOf(profile)}));
+}
+
+const char* const kNotApplied =
+    "has a colour profile that is not applied; its colours are read as ";
+
+class ImageProfile : public testing::Test {
+ protected:
+  ImageFile read(const std::string& name, const Bytes& bytes,
+                 IntegerTexels integers = IntegerTexels::Srgb) const {
+    return readImageFile(saved(folder_ / name, bytes), integers);
+  }
+  bool isSaid(const std::string& name, const Bytes& bytes,
+              IntegerTexels integers = IntegerTexels::Srgb) const {
+    return std::ranges::any_of(read(name, bytes, integers).messages, [](const Message& message) {
       return message.kind == Message::Kind::Warning &&
-             message.text.ends_with(
-                 "has a colour profile that is not applied; its colours are read as sRGB");
+             message.text.find(kNotApplied) != std::string::npos;
     });
-  };
-  const Bytes wide = text("Adobe RGB (1998)"), srgb = text("xx sRGB IEC61966-2.1"),
-              srgb16 = joined({Bytes{0, 's', 0, 'R', 0, 'G', 0, 'B'}, Bytes(9)});
-  for (const auto& [data, isWide] : {std::pair{wide, true}, {srgb, false}, {srgb16, false}}) {
-    const Bytes jpeg =
-        inserted(seed("a.jpg"), 2, segment(0xe2, joined({text("ICC_PROFILE"), {0, 1, 1}, data})));
-    EXPECT_EQ(isSaid("a.jpg", jpeg), isWide);
-    EXPECT_FALSE(isSaid("a.jpg", jpeg, IntegerTexels::Linear));  // a mask
-    EXPECT_EQ(isSaid("a.png", inserted(kPng, 8 + 25, chunk("iCCP", data))), isWide);
-    EXPECT_EQ(isSaid("a.tif", withTag(seed("a.tif"), 34675, 7, data)), isWide);
+  }
+  static Bytes jpeg(const Bytes& profile) {
+    return inserted(seed("a.jpg"), 2,
+                    segment(0xe2, joined({text("ICC_PROFILE"), {0, 1, 1}, profile})));
+  }
+  static Bytes png(const Bytes& chunks) { return inserted(kPng, 8 + 25, chunks); }
+  static Bytes tiff(const Bytes& profile) { return withTag(seed("a.tif"), 34675, 7, profile); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+std::vector<int> srgbTable(int entries) {
+  std::vector<int> table;
+  for (int i = 0; i < entries; ++i)
+    table.push_back(int(std::lround(65535 * srgbToLinear(float(i) / float(entries - 1)))));
+  return table;
+}
+
+const Bytes kLinear = iccProfile(iccCurve({})),
+            kAdobe = iccProfile(
+                iccCurve({563}),
+                {{.60974, .31111, .01947}, {.20528, .62567, .06087}, {.14919, .06322, .74457}}),
+            kDisplayP3 = iccProfile(iccSrgbCurve(), kIccDisplayP3);
+
+// By its curves and primaries, whatever it is called.
+TEST_F(ImageProfile, IsNamedUnlessItSaysWhatIsRead) {
+  const IccBytes curve = iccSrgbCurve();
+  const std::vector<std::pair<Bytes, bool>> profiles = {
+      {iccProfile(curve), false},
+      {iccProfile(iccCurve(srgbTable(1024))), false},
+      {iccProfile(iccCurve(srgbTable(42))), false},
+      {iccProfile({{"kTRC", curve}}, "GRAY"), false},
+      {kLinear, true},
+      {iccProfile(iccCurve({256})), true},
+      {iccProfile(iccParametric(0, {1})), true},
+      {iccProfile(iccCurve({563})), true},
+      {iccProfile(iccParametric(0, {2.2})), true},
+      {iccProfile({{"kTRC", iccCurve({563})}}, "GRAY"), true},
+      {kAdobe, true},
+      {kDisplayP3, true},
+      {iccProfile(curve, kIccSrgb, {{"A2B0", iccText("mft2")}}), true},  // tables
+      {iccProfile({{"kTRC", curve}}, "CMYK"), true},
+      {text("xx sRGB IEC61966-2.1"), true}};  // no profile
+  for (size_t i = 0; i < profiles.size(); ++i) {
+    const auto& [data, isOther] = profiles[i];
+    EXPECT_EQ(isSaid("a.jpg", jpeg(data)), isOther) << i;
+    EXPECT_FALSE(isSaid("a.jpg", jpeg(data), IntegerTexels::Linear)) << "a mask";
+    EXPECT_EQ(isSaid("a.png", png(iccpChunk(data))), isOther) << i;
+    EXPECT_EQ(isSaid("a.tif", tiff(data)), isOther) << i;
   }
   EXPECT_FALSE(isSaid("a.jpg", seed("a.jpg")));
   EXPECT_FALSE(isSaid("a.png", kPng));
   EXPECT_FALSE(isSaid("a.tif", seed("a.tif")));
-  // Chunks that state the same as the profile are used.
-  const Bytes linear = chunk("gAMA", {0, 1, 0x86, 0xa0});
-  EXPECT_FALSE(isSaid("a.png", inserted(kPng, 8 + 25, joined({chunk("iCCP", wide), linear}))));
+}
+
+// gAMA and cHRM are used; the profile, which has precedence, must agree with them.
+TEST_F(ImageProfile, OfAPngIsComparedWithItsChunks) {
+  const auto gamma = [](uint32_t n) { return chunk("gAMA", bigEndian(n, 4)); };
+  Bytes p3;
+  for (const uint32_t n : {31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000})
+    p3 = joined({p3, bigEndian(n, 4)});
+  const Bytes asSrgb = gamma(45455), primaries = chunk("cHRM", p3);
+  const auto isSaidOf = [&](const Bytes& profile, const Bytes& chunks) {
+    return isSaid("a.png", png(joined({iccpChunk(profile), chunks})));
+  };
+  EXPECT_TRUE(isSaidOf(kDisplayP3, asSrgb));
+  EXPECT_TRUE(isSaidOf(kDisplayP3, primaries) != isSaidOf(kDisplayP3, {}));
+  EXPECT_FALSE(isSaidOf(kDisplayP3, joined({asSrgb, primaries})));
+  EXPECT_TRUE(isSaidOf(kAdobe, asSrgb));
+  EXPECT_TRUE(isSaidOf(kAdobe, joined({asSrgb, primaries})));
+  EXPECT_FALSE(isSaidOf(kLinear, gamma(100000)));
+  EXPECT_TRUE(isSaidOf(kLinear, asSrgb));
+  EXPECT_TRUE(isSaidOf(kLinear, chunk("sRGB", {0})));
+  EXPECT_FALSE(isSaidOf(kDisplayP3, chunk("cICP", {12, 13, 0, 1}))) << "has precedence over it";
+  EXPECT_TRUE(isSaid("a.png", png(joined({chunk("iCCP", Bytes(40)), asSrgb})))) << "damaged";
+  EXPECT_TRUE(isSaid("a.png", png(iccpChunk(Bytes(3 << 10)))));
+}
+
+// Of photographs, whose response it is.
+TEST_F(ImageProfile, TellsTheTransferOfLevels) {
+  const auto transferOf = [&](const Bytes& profile) {
+    const std::optional<Transfer> ofTiff =
+        read("a.tif", tiff(profile), IntegerTexels::Levels).transfer;
+    EXPECT_EQ(read("a.jpg", jpeg(profile), IntegerTexels::Levels).transfer, ofTiff);
+    EXPECT_EQ(read("a.png", png(iccpChunk(profile)), IntegerTexels::Levels).transfer, ofTiff);
+    return ofTiff;
+  };
+  EXPECT_EQ(transferOf(iccProfile(iccSrgbCurve())), Transfer::Srgb);
+  EXPECT_EQ(transferOf(kDisplayP3), Transfer::Srgb);
+  EXPECT_EQ(transferOf(kLinear), Transfer::Linear);
+  EXPECT_EQ(transferOf(kAdobe), std::nullopt);
+  EXPECT_FALSE(isSaid("a.tif", tiff(kLinear), IntegerTexels::Levels));
+  EXPECT_TRUE(isSaid("a.tif", tiff(kDisplayP3), IntegerTexels::Levels));
+}
+
+TEST(IccProfile, DamagedOnesAgreeWithNothing) {
+  const auto isSrgb = [](const Bytes& bytes) {
+    const IccProfile profile(bytes);
+    return profile.decodesBy(srgbToLinear) && profile.has({});
+  };
+  const Bytes whole = iccProfile(iccCurve(srgbTable(64)));
+  EXPECT_TRUE(isSrgb(whole));
+  for (size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_FALSE(isSrgb(Bytes(whole.begin(), whole.begin() + long(size)))) << size;
+  }
+  for (size_t i = 128; i < whole.size(); ++i)
+    for (const uint8_t byte : {0, 0x7f, 0xff}) {
+      Bytes damaged = whole;
+      damaged[i] = byte;
+      isSrgb(damaged);  // must not crash
+    }
+  for (int kind = 0; kind < 6; ++kind)
+    for (const double number : {0., -1., 32767., -32768.})
+      EXPECT_FALSE(isSrgb(iccProfile(iccParametric(kind, std::vector<double>(7, number)))));
 }
 
 // Cameras that are set to Adobe RGB state that in EXIF's ColorSpace, often only there.
@@ -237,7 +358,7 @@ TEST(ImageMetadata, ColoursOfExifThatAreNotAppliedAreNamed) {
     const Bytes photograph(file.begin(), file.end());
     EXPECT_EQ(isSaid(photograph), isOther) << space;
     EXPECT_FALSE(isSaid(photograph, IntegerTexels::Linear));
-    const Bytes profile = joined({text("ICC_PROFILE"), {0, 1, 1}, text("xx sRGB IEC61966-2.1")});
+    const Bytes profile = joined({text("ICC_PROFILE"), {0, 1, 1}, iccProfile(iccSrgbCurve())});
     EXPECT_FALSE(isSaid(inserted(photograph, 2, segment(0xe2, profile))));  // tells more
   }
   const std::string noColors = withExif({jpeg.begin(), jpeg.end()}, exifBlock({isoSpeed(100)}));

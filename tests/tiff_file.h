@@ -21,6 +21,7 @@ struct TiffImage {
   uint16_t photometric = 2, samples = 3, bits = 8, compression = 1, format = 1;  // 0 bits: unstated
   std::vector<TiffEntry> more = {};
   std::vector<TiffImage> below = {};  // in directories that an entry points to
+  bool isTiled = false;               // one tile in place of the strip: sides are multiples of 16
 };
 
 class TiffWriter {
@@ -54,11 +55,12 @@ class TiffWriter {
                                       {262, 3, {image.photometric}},
                                       {kStripOffsets, 4, {0}},
                                       {277, 3, {image.samples}},
-                                      {278, 4, {uint32_t(image.height)}},
-                                      {279, 4, {uint32_t(image.texels.size())}},
+                                      {kRowsPerStrip, 4, {uint32_t(image.height)}},
+                                      {kStripLengths, 4, {uint32_t(image.texels.size())}},
                                       {339, 3, std::vector<uint32_t>(image.samples, image.format)}};
     entries.insert(entries.end(), image.more.begin(), image.more.end());
     if (!below.values.empty()) entries.push_back(below);
+    if (image.isTiled) tile(entries);
     if (image.bits == 0)
       std::erase_if(entries, [](const TiffEntry& entry) { return entry.tag == kBits; });
     std::ranges::sort(entries, {}, &TiffEntry::tag);
@@ -73,10 +75,20 @@ class TiffWriter {
       directory += number(entry.tag, 2) + number(entry.type, 2) + number(count, 4) + values;
     }
     const size_t at = appended(directory + number(0, 4));
-    const size_t strip =
-        std::ranges::find(entries, kStripOffsets, &TiffEntry::tag) - entries.begin();
-    set(at + 2 + 12 * strip + 8, appended(image.texels));
+    const uint16_t offsets = image.isTiled ? kTileOffsets : kStripOffsets;
+    const size_t entry = std::ranges::find(entries, offsets, &TiffEntry::tag) - entries.begin();
+    set(at + 2 + 12 * entry + 8, appended(image.texels));
     return {at, at + directory.size()};
+  }
+
+  // Entries of a strip become those of a tile of the image's size.
+  static void tile(std::vector<TiffEntry>& entries) {
+    for (TiffEntry& entry : entries)
+      entry.tag = entry.tag == kStripOffsets   ? kTileOffsets
+                  : entry.tag == kRowsPerStrip ? kTileHeight
+                  : entry.tag == kStripLengths ? kTileLengths
+                                               : entry.tag;
+    entries.push_back({kTileWidth, 4, entries.front().values});
   }
 
   size_t appended(const std::string& bytes) {
@@ -91,7 +103,9 @@ class TiffWriter {
     return text;
   }
 
-  static constexpr uint16_t kBits = 258, kStripOffsets = 273;
+  static constexpr uint16_t kBits = 258, kStripOffsets = 273, kRowsPerStrip = 278,
+                            kStripLengths = 279, kTileWidth = 322, kTileHeight = 323,
+                            kTileOffsets = 324, kTileLengths = 325;
   std::string file_;
 };
 

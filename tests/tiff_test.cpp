@@ -2,7 +2,10 @@
 // The image of a TIFF that is read, its orientation, and the files that are refused.
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "base/error.h"
+#include "icc_file.h"
 #include "image/image.h"
 #include "image/io/read_image.h"
 #include "run_command.h"
@@ -63,6 +66,65 @@ class Tiff : public testing::Test {
   std::string path() const { return folder_ / "a.tif"; }
   TemporaryFolder folder_;
 };
+
+// RFC 1950, of stored blocks of one byte each.
+std::string deflatedOf(const std::string& bytes) {
+  std::string file = "\x78\x01";
+  uint32_t a = 1, b = 0;  // Adler-32
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    const bool isLast = i + 1 == bytes.size();
+    file += std::string({char(isLast), 1, 0, char(0xfe), char(0xff), bytes[i]});
+    a = (a + uint8_t(bytes[i])) % 65521;
+    b = (a + b) % 65521;
+  }
+  for (const uint32_t byte : {b >> 8, b, a >> 8, a}) file += char(byte);
+  return file;
+}
+
+// What a predictor leaves of rows of doubles (TIFF 6.0, section 14; TIFF's technical note 3).
+std::string predicted(const std::vector<double>& numbers, size_t rowLength, size_t samples,
+                      uint32_t predictor) {
+  std::string bytes(8 * numbers.size(), 0);
+  std::memcpy(bytes.data(), numbers.data(), bytes.size());
+  for (size_t row = 0; row < numbers.size(); row += rowLength) {
+    const std::string plain = bytes.substr(8 * row, 8 * rowLength);
+    char* to = &bytes[8 * row];
+    if (predictor == 2)
+      for (size_t i = rowLength - 1; i >= samples; --i) {
+        uint64_t one, before;
+        std::memcpy(&one, &plain[8 * i], 8);
+        std::memcpy(&before, &plain[8 * (i - samples)], 8);
+        one -= before;
+        std::memcpy(to + 8 * i, &one, 8);
+      }
+    if (predictor == 3) {
+      for (size_t i = 0; i < plain.size(); ++i) to[(7 - i % 8) * rowLength + i / 8] = plain[i];
+      for (size_t i = plain.size() - 1; i >= samples; --i) to[i] = char(to[i] - to[i - samples]);
+    }
+  }
+  return bytes;
+}
+
+TEST_F(Tiff, NumbersOf64BitsAreRead) {
+  constexpr int kSide = 16;
+  for (const bool isTiled : {false, true})
+    for (const uint16_t samples : {uint16_t(1), uint16_t(3), uint16_t(4)})
+      for (const uint32_t predictor : {1, 2, 3}) {
+        std::vector<double> numbers;
+        for (int i = 0; i < kSide * kSide * samples; ++i) numbers.push_back(0.3 * i - 5);
+        numbers[7] = 1e10, numbers[8] = 1e-8;
+        // Only compressed texels are predicted: here by Deflate, in stored blocks.
+        const std::string bytes = predicted(numbers, size_t(kSide * samples), samples, predictor);
+        TiffImage image{kSide, kSide, predictor == 1 ? bytes : deflatedOf(bytes), 2, samples, 64};
+        image.format = 3;
+        image.photometric = samples == 1 ? 1 : 2;
+        image.compression = predictor == 1 ? 1 : 8;
+        image.isTiled = isTiled;
+        if (predictor > 1) image.more = {{317, 3, {predictor}}};
+        EXPECT_EQ(read({image}).image.texels, std::vector<float>(numbers.begin(), numbers.end()))
+            << isTiled << ' ' << samples << ' ' << predictor;
+      }
+}
 
 // libtiff mirrors the images that it converts to RGB, so that these would be turned twice.
 TEST_F(Tiff, AllKindsAreTurnedOnce) {
@@ -170,20 +232,6 @@ TEST_F(Tiff, TexelsThatCannotBeDecodedAreRefused) {
   }
 }
 
-// RFC 1950, of stored blocks of one byte each.
-std::string deflatedOf(const std::string& bytes) {
-  std::string file = "\x78\x01";
-  uint32_t a = 1, b = 0;  // Adler-32
-  for (size_t i = 0; i < bytes.size(); ++i) {
-    const bool isLast = i + 1 == bytes.size();
-    file += std::string({char(isLast), 1, 0, char(0xfe), char(0xff), bytes[i]});
-    a = (a + uint8_t(bytes[i])) % 65521;
-    b = (a + b) % 65521;
-  }
-  for (const uint32_t byte : {b >> 8, b, a >> 8, a}) file += char(byte);
-  return file;
-}
-
 // zlib's bound on its own output for a strip does not bound other writers' output.
 TEST_F(Tiff, DeflateMayBeLongerThanItsTexels) {
   TiffImage deflated = rgb();
@@ -252,11 +300,17 @@ TEST_F(Tiff, PrimariesAreConverted) {
 
 TEST_F(Tiff, ColoursThatAreNotAppliedAreNamed) {
   constexpr uint16_t kTransferFunction = 301, kProfile = 34675;
-  const TiffEntry profile{kProfile, 7, std::vector<uint32_t>(40, 'x')};
-  const TiffImage floats{1, 1, std::string(12, '\0'), 2, 3, 32, 1, 3, {profile}};
-  const ImageFile light = read({floats});
-  ASSERT_EQ(light.messages.size(), 1u);
-  EXPECT_NE(light.messages[0].text.find("read as linear Rec. 709"), std::string::npos);
+  const auto floats = [&](const IccBytes& profile) {
+    const TiffEntry entry{kProfile, 7, {profile.begin(), profile.end()}};
+    return read({TiffImage{1, 1, std::string(12, '\0'), 2, 3, 32, 1, 3, {entry}}}).messages;
+  };
+  for (const IccBytes& other :
+       {IccBytes(40, 'x'), iccProfile(iccSrgbCurve()), iccProfile(iccCurve({}), kIccDisplayP3)}) {
+    const Messages messages = floats(other);
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_NE(messages[0].text.find("read as linear Rec. 709"), std::string::npos);
+  }
+  EXPECT_TRUE(floats(iccProfile(iccCurve({}))).empty());
   const ImageFile table = read({rgb({{kTransferFunction, 3, std::vector<uint32_t>(256, 9)}})});
   ASSERT_EQ(table.messages.size(), 1u);
   EXPECT_NE(table.messages[0].text.find("TransferFunction"), std::string::npos);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/json.h"
+#include "base/text.h"
 #include "description/describe_parts.h"
 #include "film/aov.h"
 #include "lighting/strategy.h"
@@ -20,15 +21,20 @@ using Json = nlohmann::ordered_json;
 
 // Null where there is no limit.
 Json limitOf(int depth) { return depth < INT_MAX ? Json(depth) : Json(); }
+// What a text of `otherwise` says; `otherwise` where rounding to the text has left the range.
+double numberIn(const std::string& text, double otherwise) {
+  double number = 0;
+  return toNumber(text, number) ? number : otherwise;
+}
 // The shortest number that reads as this float.
-Json numberOf(float x) { return std::stod(fmt::format("{}", x)); }
+Json numberOf(float x) { return numberIn(fmt::format("{}", x), x); }
 Json numberOf(const std::optional<float>& x) { return x ? numberOf(*x) : Json(); }
 Json numberOf(const std::optional<double>& x) { return x ? Json(*x) : Json(); }
 // The shortest number near `guess` that `map` maps exactly to `image`, as it did with the user's
 // number; `guess` if rounding leaves none.
 template <class Map>
 Json inverseOf(const Map& map, double image, double guess) {
-  for (const double number : {std::stod(fmt::format("{:.15g}", guess)), guess,
+  for (const double number : {numberIn(fmt::format("{:.15g}", guess), guess), guess,
                               std::nextafter(guess, -INFINITY), std::nextafter(guess, INFINITY)})
     if (map(number) == image) return number;
   return guess;

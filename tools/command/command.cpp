@@ -1,17 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "command.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
+
+#include "base/text.h"
 
 namespace chromeball {
+namespace {
+
+// Numbers as settings read them (base/text.h). CLI11's conversion also takes other bases, white
+// space and `true`.
+template <class Number>
+bool takeWord(const std::string& word, Number& number) {
+  return toNumber(word, number);
+}
+bool takeWord(const std::string& word, float& number) {
+  double precise = 0;  // below the smallest float it is 0
+  if (!toNumber(word, precise)) return false;
+  number = float(precise);
+  return true;
+}
+
+template <class Number>
+bool takeWords(const CLI::results_t& words, Number& number) {
+  return takeWord(words.back(), number);
+}
+template <class Number>
+bool takeWords(const CLI::results_t& words, std::optional<Number>& number) {
+  return takeWord(words.back(), number.emplace());
+}
+template <class Number>
+bool takeWords(const CLI::results_t& words, std::vector<Number>& numbers) {
+  numbers.clear();
+  return std::ranges::all_of(
+      words, [&](const std::string& word) { return takeWord(word, numbers.emplace_back()); });
+}
+
+template <class T>
+struct ElementOf {
+  using Type = T;
+};
+template <class T>
+struct ElementOf<std::optional<T>> {
+  using Type = T;
+};
+template <class T>
+struct ElementOf<std::vector<T>> {
+  using Type = T;
+};
+
+// As CLI::App::add_option(), but for the conversion.
+template <class T>
+CLI::Option* addNumberOption(CLI::App& app, const std::string& names, T& value,
+                             const std::string& help) {
+  CLI::Option* option = app.add_option(
+      names, [&value](const CLI::results_t& words) { return takeWords(words, value); }, help, false,
+      [&value] { return CLI::detail::checked_to_string<T, T>(value); });
+  option->type_name(CLI::detail::type_name<T>());
+  option->type_size(CLI::detail::type_count_min<T>::value, CLI::detail::type_count<T>::value);
+  return option->expected(CLI::detail::expected_count<T>::value);
+}
+
+}  // namespace
 
 Option Option::required() { return Option(option_->required()); }
 Option Option::excludes(const Option& other) { return Option(option_->excludes(other.option_)); }
 Option Option::excludes(const std::string& name) { return Option(option_->excludes(name)); }
 Option Option::inRange(int least, int most) {
-  return Option(option_->check(CLI::Range(least, most)));
+  const auto check = [=](const std::string& word) {
+    int number = 0;
+    const bool isInside = toNumber(word, number) && number >= least && number <= most;
+    return isInside ? ""
+                    : fmt::format("`{}` is not a whole number from {} to {}", word, least, most);
+  };
+  return Option(option_->check(check, fmt::format("INT in [{} - {}]", least, most)));
 }
 Option Option::delimiter(char separator) { return Option(option_->delimiter(separator)); }
 Option Option::onePerName() { return Option(option_->allow_extra_args(false)); }
@@ -29,7 +97,10 @@ Command Command::addCommand(const std::string& name, const std::string& help) {
 
 template <class T>
 Option Command::addOption(const std::string& names, T& value, const std::string& help) {
-  return Option(app_->add_option(names, value, help));
+  if constexpr (std::is_arithmetic_v<typename ElementOf<T>::Type>)
+    return Option(addNumberOption(*app_, names, value, help));
+  else
+    return Option(app_->add_option(names, value, help));
 }
 template Option Command::addOption(const std::string&, std::string&, const std::string&);
 template Option Command::addOption(const std::string&, std::optional<std::string>&,

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "command_line.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -101,6 +104,14 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
                      word, known.empty() ? help : didYouMean(option, known));
 }
 
+// Without it the first file that is opened would get the number of a closed standard stream, and
+// what is printed would be written into it. Reading and writing fail as they do when it is closed.
+void occupyClosedStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0)
+      open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // gets the lowest number
+}
+
 // An earlier write may have failed, after which nothing is left to flush.
 void finishOutput() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout))
@@ -143,6 +154,7 @@ bool hasMemoryLimit(std::string_view command) {
 }  // namespace
 
 int runCommandLine(int argc, char** argv) {
+  occupyClosedStreams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the size limit is a failed write
   try {
     return run(argc, argv);

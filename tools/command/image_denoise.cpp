@@ -10,6 +10,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image_commands.h"
+#include "input_image.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "session/denoised_image.h"
@@ -89,7 +90,7 @@ void run(const ImageDenoiseArguments& arguments) {
         input, [&](double fraction) { bar.update(fraction); }, never));
   }();
   OutputImage output;
-  output.metadata = std::move(file.metadata);
+  output.metadata = keptMetadata(file, arguments.input, arguments.output);
   output.placement = file.placement;
   Image noisy = withColor(*findColorAndAlpha(file), color.mean);
   output.layers.push_back({"", noisy.channels == 4 ? "RGBA" : "RGB", std::move(noisy)});

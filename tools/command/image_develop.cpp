@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "front/arguments.h"
 #include "front/develop_text.h"
 #include "image/io/output_file.h"
@@ -18,9 +19,8 @@ namespace chromeball {
 namespace {
 
 bool isNumber(const std::string& text) {
-  char* end = nullptr;
-  std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == 0;
+  double number = 0;
+  return toNumber(text, number);
 }
 
 struct OpticsOption {
@@ -128,7 +128,7 @@ Input readInput(const ImageDevelopArguments& arguments, const DevelopSettings& s
   Input input;
   input.frame = frameOf(arguments, file, settings);
   if (settings.lens) input.depth = depthOf(file, arguments.in);
-  input.image.metadata = file.metadata;
+  input.image.metadata = keptMetadata(file, arguments.in, arguments.out);
   if (!settings.isEmpty()) input.image.metadata["developed"] = historyOf(arguments, file.metadata);
   input.otherLayers = layerNames(file);
   input.image.placement = file.placement;

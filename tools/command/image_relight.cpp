@@ -151,7 +151,7 @@ void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& tr
   }
   checkFinite(color, arguments.in);
   OutputImage output;
-  output.metadata = file.metadata;
+  output.metadata = keptMetadata(file, arguments.in, arguments.out);
   output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, color));
   print(writeInWindow(arguments.out, std::move(output), arguments.in, transform), false);
@@ -164,7 +164,7 @@ void runGains(const ImageRelightArguments& arguments, const DisplayTransform& tr
   const std::vector<Rgb> gains = gainsOf(groups, given);
   for (size_t i = 0; i < gains.size(); ++i) groups.layers[i] = scaled(groups.layers[i], gains[i]);
   OutputImage output;
-  output.metadata = file.metadata;
+  output.metadata = keptMetadata(file, arguments.in, arguments.out);
   output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, sumOf(groups.layers)));
   checkFinite(output.layers.front().image, arguments.in);

@@ -3,17 +3,47 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
+#include <ctime>
 
 #include "base/message.h"
 #include "base/text.h"
 #include "scene_options.h"
 
 namespace chromeball {
+namespace {
+
+// In the calling thread a pipe that nobody reads makes a write fail, instead of ending the process.
+class BrokenPipesAreErrors {
+ public:
+  BrokenPipesAreErrors() {
+    sigemptyset(&pipe_);
+    sigaddset(&pipe_, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~BrokenPipesAreErrors() {
+    const timespec now{};
+    if (sigismember(&before_, SIGPIPE) == 0) sigtimedwait(&pipe_, nullptr, &now);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  BrokenPipesAreErrors(const BrokenPipesAreErrors&) = delete;
+  BrokenPipesAreErrors& operator=(const BrokenPipesAreErrors&) = delete;
+
+ private:
+  sigset_t pipe_, before_;
+};
+
+}  // namespace
+
+void writeError(std::string_view text) {
+  const BrokenPipesAreErrors pipes;
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
 
 void warn(const std::string& text) { note("warning: " + text); }
 
-void note(const std::string& text) { fmt::print(stderr, "chromeball: {}\n", printable(text)); }
+void note(const std::string& text) { writeError(fmt::format("chromeball: {}\n", printable(text))); }
 
 void print(const Messages& messages, bool quiet) {
   for (const Message& message : condensed(messages)) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library's messages on standard error.
+// The library's messages on standard error. One that cannot be written is lost, and the work goes
+// on.
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "base/message.h"
 
@@ -10,6 +12,9 @@ namespace chromeball {
 
 void warn(const std::string& text);  // "chromeball: warning: ..."; --quiet does not silence it
 void note(const std::string& text);  // "chromeball: ...", printable() (base/text.h)
+
+// As it is: parts of lines, and controls of the terminal.
+void writeError(std::string_view text);
 
 // All warnings, and the notes unless `quiet`; each with the option that resolves it.
 void print(const Messages& messages, bool quiet);

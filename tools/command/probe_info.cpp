@@ -150,8 +150,7 @@ void addProbeInfoCommand(Command probeCommand) {
   command.callback([arguments] {
     const LoadedProbe probe = loadProbe(arguments->file, arguments->mapping, "--mapping");
     print(probe.messages, false);
-    for (const std::string& warning : lightWarnings(probe, arguments->file))
-      fmt::print(stderr, "chromeball: warning: {}\n", warning);
+    for (const std::string& warning : lightWarnings(probe, arguments->file)) warn(warning);
     const ProbeInfo info = turned(probeInfo(probe.latLong), arguments->rotation);
     const auto angles = [&] {
       return texelSolidAngles(probe.mapping, {probe.fileWidth, probe.fileHeight});

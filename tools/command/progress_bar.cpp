@@ -7,8 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
+
+#include "messages.h"
 
 namespace chromeball {
 namespace {
@@ -33,7 +34,7 @@ ProgressBar::ProgressBar(bool shown, std::string title)
     : shown_(shown), title_(std::move(title) + "  ") {}
 
 ProgressBar::~ProgressBar() {
-  if (drawn_) std::fputs("\r\x1b[K", stderr);
+  if (drawn_) writeError("\r\x1b[K");
 }
 
 void ProgressBar::update(double fraction) {
@@ -54,14 +55,13 @@ void ProgressBar::update(double fraction) {
   const bool fits = int(title_.size() + described.size()) + kLeastWidth + 3 < columns;
   const std::string& text = fits ? described : times;
   if (std::isnan(fraction)) {
-    fmt::print(stderr, "\r{}{}\x1b[K", title_, text);
+    writeError(fmt::format("\r{}{}\x1b[K", title_, text));
   } else {
     const int room = columns - int(title_.size() + text.size()) - 4;
     const int width = std::clamp(room, kLeastWidth, kWidth), full = int(fraction * width);
-    fmt::print(stderr, "\r{}[{}{}] {}\x1b[K", title_, std::string(full, '#'),
-               std::string(width - full, '.'), text);
+    writeError(fmt::format("\r{}[{}{}] {}\x1b[K", title_, std::string(full, '#'),
+                           std::string(width - full, '.'), text));
   }
-  std::fflush(stderr);
 }
 
 bool ProgressBar::isTerminal() { return isatty(STDERR_FILENO); }

@@ -3,6 +3,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 
@@ -33,7 +35,8 @@ class OpenedImage : public ModuleImage {
   const ModuleImageHeader& header() const override { return header_; }
 
   void read(float* texels) override {
-    const OIIO::ImageSpec& spec = input_->spec();
+    const OIIO::ImageSpec spec = input_->spec();
+    if (holdsContiguousDoubles(spec)) return readDoubles(spec, texels);
     const bool wasRead =
         spec.tile_width ? input_->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, texels)
                         : readRows(spec, texels);
@@ -42,6 +45,11 @@ class OpenedImage : public ModuleImage {
   }
 
  private:
+  static bool holdsContiguousDoubles(const OIIO::ImageSpec& spec) {
+    return spec.format == OIIO::TypeDesc::DOUBLE &&
+           (spec.nchannels == 1 || spec.get_string_attribute("planarconfig") != "separate");
+  }
+
   // The library inflates whole strips by itself: it returns damaged ones as they are, and cuts
   // strips that are longer than zlib would make them. So rows are read, by libtiff.
   bool readRows(const OIIO::ImageSpec& spec, float* texels) {
@@ -51,6 +59,42 @@ class OpenedImage : public ModuleImage {
                                   OIIO::TypeDesc::FLOAT, texels + size_t(y) * rowLength))
         return false;
     return true;
+  }
+
+  // `spec`: describes the doubles. A row of texels is one block, unless there are tiles.
+  void readDoubles(const OIIO::ImageSpec& spec, float* texels) {
+    BytesOfDoubles image = bytesOfDoubles(file_);
+    input_.reset();
+    file_.swap(image.file);
+    memory_ = OIIO::Filesystem::IOMemReader(file_.data(), file_.size());
+    open("tiff", "doubles.tif");
+    const OIIO::ImageSpec& bytes = input_->spec();
+    const bool isTiled = spec.tile_width != 0;
+    const int blockWidth = isTiled ? spec.tile_width : spec.width,
+              blockHeight = isTiled ? spec.tile_height : 1, scale = int(sizeof(double));
+    const size_t samples = size_t(spec.nchannels);
+    if (bytes.width != scale * spec.width || bytes.nchannels != spec.nchannels ||
+        bytes.format != OIIO::TypeDesc::UINT8 || bytes.tile_width != scale * spec.tile_width)
+      throw std::runtime_error("its numbers of 64 bits cannot be read");
+    const size_t rowBytes = size_t(blockWidth) * samples * sizeof(double);
+    std::vector<uint8_t> block(rowBytes * size_t(blockHeight));
+    std::vector<double> numbers;
+    for (int top = 0; top < spec.height; top += blockHeight)
+      for (int left = 0; left < spec.width; left += blockWidth) {
+        const int x = bytes.x + scale * left, y = bytes.y + top;
+        const bool wasRead =
+            isTiled ? input_->read_tile(x, y, bytes.z, OIIO::TypeDesc::UINT8, block.data())
+                    : input_->read_scanlines(0, 0, y, y + 1, bytes.z, 0, bytes.nchannels,
+                                             OIIO::TypeDesc::UINT8, block.data());
+        if (!wasRead || input_->has_error()) throw std::runtime_error(input_->geterror());
+        for (int row = 0; row < std::min(blockHeight, spec.height - top); ++row) {
+          decodeDoubles(image, std::span(block).subspan(size_t(row) * rowBytes, rowBytes), samples,
+                        numbers);
+          float* to = texels + (size_t(top + row) * size_t(spec.width) + size_t(left)) * samples;
+          const size_t count = size_t(std::min(blockWidth, spec.width - left)) * samples;
+          for (size_t i = 0; i < count; ++i) to[i] = float(numbers[i]);
+        }
+      }
   }
 
   // Inverts grey, but not alpha, where 0 is white. The library has inverted all channels of 8 bits,

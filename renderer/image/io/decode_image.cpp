@@ -29,11 +29,18 @@ bool startsWith(std::span<const uint8_t> file, std::string_view magic) {
   throwInput("{}: is not a PNG, JPEG or WebP file", name);
 }
 
+void checkTextureMemory(const SampleLayout& image, const std::string& name) {
+  constexpr double kTextureCopies = 1.5;  // itself and its smaller levels
+  checkImageMemory(name, image.width, image.height, 4, image.bits > 8 ? sizeof(float) : 1,
+                   kTextureCopies);
+}
+
 // Decides by the content, since many models label their images wrongly.
-std::unique_ptr<SampleReader> openTexture(std::span<const uint8_t> file, const std::string& name) {
+std::unique_ptr<SampleReader> openTexture(std::span<const uint8_t> file, const std::string& name,
+                                          const CheckSize& check) {
   const ImageFormat format = imageFormat(file);
   if (format != ImageFormat::Png && format != ImageFormat::Jpeg) refuseFormat(file, name);
-  const auto check = [&](const SampleLayout& image) {
+  const auto checkAll = [&](const SampleLayout& image) {
     if (image.width > kMaxImageSide || image.height > kMaxImageSide)
       throwInput("{}: {} x {} texels with {} channels; the limit is {} x {}", name, image.width,
                  image.height, image.channels, kMaxImageSide, kMaxImageSide);
@@ -42,11 +49,10 @@ std::unique_ptr<SampleReader> openTexture(std::span<const uint8_t> file, const s
         uint64_t(image.width) * uint64_t(image.height) > file.size() * 8 * kMaxDeflateRatio)
       throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, image.width,
                  image.height, file.size());
-    constexpr double kTextureCopies = 1.5;  // itself and its smaller levels
-    checkImageMemory(name, image.width, image.height, 4, image.bits > 8 ? sizeof(float) : 1,
-                     kTextureCopies);
+    if (check) check(image);
+    checkTextureMemory(image, name);
   };
-  return format == ImageFormat::Png ? openPng(file, check) : openJpeg(file, check);
+  return format == ImageFormat::Png ? openPng(file, checkAll) : openJpeg(file, checkAll);
 }
 
 // Widens rows of samples of type T, multiplied by `unit`, to RGBA texels. Takes a row at a time, so
@@ -78,17 +84,18 @@ std::vector<Texel> readTexels(SampleReader& reader, typename Texel::value_type u
 uint64_t decodedBytes(std::span<const uint8_t> file) {
   if (imageFormat(file) == ImageFormat::Webp) return webpBytes(file);
   try {
-    const SampleLayout image = openTexture(file, "")->layout();
+    const SampleLayout image = openTexture(file, "", {})->layout();
     return uint64_t(image.width) * uint64_t(image.height) * (image.bits > 8 ? sizeof(vec4) : 4);
   } catch (const std::runtime_error&) {
     return 0;
   }
 }
 
-DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name) {
-  if (imageFormat(file) == ImageFormat::Webp) return decodeWebp(file, name);
+DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name,
+                         const CheckSize& check) {
+  if (imageFormat(file) == ImageFormat::Webp) return decodeWebp(file, name, check);
   try {
-    const std::unique_ptr<SampleReader> reader = openTexture(file, name);
+    const std::unique_ptr<SampleReader> reader = openTexture(file, name, check);
     DecodedImage image;
     image.width = reader->layout().width;
     image.height = reader->layout().height;
@@ -115,7 +122,8 @@ bool fitsInto(uint64_t texels, size_t fileBytes) {
 
 }  // namespace
 
-DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name) {
+DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name,
+                        const CheckSize& check) {
   WebPBitstreamFeatures features;
   if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK)
     throwInput("{}: damaged image: not a WebP", name);
@@ -127,6 +135,9 @@ DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name) 
   if (!fitsInto(texels, file.size()))
     throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, image.width,
                image.height, file.size());
+  const SampleLayout layout{image.width, image.height, features.has_alpha ? 4 : 3};
+  if (check) check(layout);
+  checkTextureMemory(layout, name);
   image.texels8.resize(texels);
   uint8_t* out = image.texels8.data()->data();
   const size_t bytes = image.texels8.size() * 4;

@@ -25,10 +25,21 @@ struct DecodedImage {
 
 inline constexpr int kMaxImageSide = 16384;
 
-// Decodes a PNG, JPEG or WebP; `name` is for messages. Throws InputError for another format, for
-// damaged data, and for an image with a side above kMaxImageSide or with more texels than the bytes
-// of the file can hold.
-DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name);
+// Interleaved samples of 8 or 16 bits: one channel (grey), two (grey, alpha), three (RGB) or four
+// (RGB, alpha). Alpha is not associated.
+struct SampleLayout {
+  int width = 0, height = 0, channels = 0, bits = 8;
+  bool hasAlpha() const { return channels % 2 == 0; }
+};
+
+// Throws if an image of this size must not be read. Called before memory is allocated for it.
+using CheckSize = std::function<void(const SampleLayout&)>;
+
+// Decodes a PNG, JPEG or WebP; `name` is for messages, and `check` may be empty. Throws InputError
+// for another format, for damaged data, for an image with a side above kMaxImageSide, with more
+// texels than the bytes of the file can hold or than fit into memory, and what `check` throws.
+DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name,
+                         const CheckSize& check = {});
 
 // Bytes of the arrays that decodeImage() would fill, by the header of the file; 0 if it is damaged,
 // or claims more than the file can hold.
@@ -37,22 +48,13 @@ uint64_t decodedBytes(std::span<const uint8_t> file);
 // Decodes WebP by libwebp.
 
 // The same as decodeImage(), for a WebP file.
-DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name);
+DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name,
+                        const CheckSize& check);
 
 // The same as decodedBytes(), for a WebP file.
 uint64_t webpBytes(std::span<const uint8_t> file);
 
 // PNG and JPEG: files of integer samples, decoded row by row.
-
-// Interleaved samples of 8 or 16 bits: one channel (grey), two (grey, alpha), three (RGB) or four
-// (RGB, alpha). Alpha is not associated.
-struct SampleLayout {
-  int width = 0, height = 0, channels = 0, bits = 8;
-  bool hasAlpha() const { return channels % 2 == 0; }
-};
-
-// Throws if an image of this size may not be read.
-using CheckSize = std::function<void(const SampleLayout&)>;
 
 // An open file. Metadata is skipped: profiles, EXIF blocks and comments are never parsed.
 class SampleReader {

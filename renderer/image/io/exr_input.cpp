@@ -134,28 +134,19 @@ class ExrInput::Part {
     const int first = window.min.y + top, last = first + count - 1;
     if (isLuminanceChroma(header().channels())) return readColor(first, last, channels, texels);
     const size_t width = size_t(window.max.x) - size_t(window.min.x) + 1;
-    std::vector<std::vector<uint32_t>> integers(channels.size());
+    const size_t stride = channels.size() * sizeof(float);
+    // OpenEXR addresses the texel (x, y) of the window by base + x * stride + y * row. The base of
+    // a window far from 0 is no address, so it is a number.
+    const ptrdiff_t offset = (ptrdiff_t(width) * first + window.min.x) * ptrdiff_t(stride);
     Imf::FrameBuffer buffer;
     for (size_t c = 0; c < channels.size(); ++c) {
-      const bool isInteger = header().channels()[channels[c].c_str()].type == Imf::UINT;
-      if (isInteger) integers[c].resize(width * size_t(count));
-      const size_t stride = isInteger ? sizeof(uint32_t) : channels.size() * sizeof(float);
-      // OpenEXR addresses the texel (x, y) of the window by base + x * stride + y * row. The base
-      // of a window far from 0 is no address, so it is a number.
-      const ptrdiff_t offset = (ptrdiff_t(width) * first + window.min.x) * ptrdiff_t(stride);
-      char* begin = isInteger ? reinterpret_cast<char*>(integers[c].data())
-                              : reinterpret_cast<char*>(texels + c);
-      char* base = reinterpret_cast<char*>(reinterpret_cast<uintptr_t>(begin) - uintptr_t(offset));
-      buffer.insert(channels[c],
-                    Imf::Slice(isInteger ? Imf::UINT : Imf::FLOAT, base, stride, stride * width));
+      char* base =
+          reinterpret_cast<char*>(reinterpret_cast<uintptr_t>(texels + c) - uintptr_t(offset));
+      buffer.insert(channels[c], Imf::Slice(Imf::FLOAT, base, stride, stride * width));
     }
     if (!part_) part_.emplace(file_, selected_);
     part_->setFrameBuffer(buffer);
     part_->readPixels(first, last);
-    for (size_t c = 0; c < channels.size(); ++c)
-      for (size_t i = 0; i < integers[c].size(); ++i)
-        texels[i * channels.size() + c] =
-            float(integers[c][i]) * (1.0f / float(std::numeric_limits<uint32_t>::max()));
   }
 
  private:

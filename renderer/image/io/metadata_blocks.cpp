@@ -3,6 +3,8 @@
 // the first start of scan.
 #include "image/io/metadata_blocks.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -76,9 +78,13 @@ std::span<const uint8_t> jpegJfif(std::span<const uint8_t> file) {
   return segmentOf(file, kApp0, std::string_view("JFIF\0", 5));
 }
 
-std::span<const uint8_t> jpegProfile(std::span<const uint8_t> file) {
+std::optional<std::vector<uint8_t>> jpegProfile(std::span<const uint8_t> file) {
   constexpr std::string_view kName("ICC_PROFILE\0", 12);
-  return segmentOf(file, kApp2, kName);
+  constexpr size_t kCountBytes = 2;  // the number of the part, and that of all parts
+  const std::span<const uint8_t> segment = segmentOf(file, kApp2, kName);
+  if (segment.empty()) return {};
+  return std::vector(segment.begin() + ptrdiff_t(std::min(kCountBytes, segment.size())),
+                     segment.end());
 }
 
 // PNG (ISO/IEC 15948): a signature, then chunks of length, type, data and checksum.
@@ -96,6 +102,21 @@ std::span<const uint8_t> pngChunk(std::span<const uint8_t> file, std::string_vie
     at = begin + size_t(length) + kChecksumBytes;
   }
   return {};
+}
+
+std::optional<std::vector<uint8_t>> pngProfile(std::span<const uint8_t> file) {
+  constexpr size_t kMostBytes = 1 << 20, kMethodBytes = 1;  // of compression, behind the name
+  const std::span<const uint8_t> chunk = pngChunk(file, "iCCP");
+  if (chunk.empty()) return {};
+  const auto name = std::ranges::find(chunk, 0);
+  if (chunk.end() - name <= ptrdiff_t(1 + kMethodBytes)) return std::vector<uint8_t>();
+  const std::span<const uint8_t> packed(name + 1 + kMethodBytes, chunk.end());
+  std::vector<uint8_t> profile(kMostBytes);
+  uLongf size = kMostBytes;
+  const bool isSound =
+      uncompress(profile.data(), &size, packed.data(), uLong(packed.size())) == Z_OK;
+  profile.resize(isSound ? size : 0);
+  return profile;
 }
 
 // Some writers begin the block with the name that it has in a JPEG.

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace chromeball {
 
@@ -15,8 +17,10 @@ inline constexpr std::string_view kExifName("Exif\0\0", 6);
 std::span<const uint8_t> jpegExif(std::span<const uint8_t> file);
 std::span<const uint8_t> pngExif(std::span<const uint8_t> file);
 
-// The ICC profile, or its first part, which describes it. Empty if there is none.
-std::span<const uint8_t> jpegProfile(std::span<const uint8_t> file);
+// The ICC profile; of a JPEG that has it in parts of 64 KB, the first. nullopt if there is none,
+// empty if a PNG's cannot be inflated to a megabyte.
+std::optional<std::vector<uint8_t>> jpegProfile(std::span<const uint8_t> file);
+std::optional<std::vector<uint8_t>> pngProfile(std::span<const uint8_t> file);
 
 // A JPEG's JFIF header, after its name (JFIF 1.02); empty if there is none.
 std::span<const uint8_t> jpegJfif(std::span<const uint8_t> file);

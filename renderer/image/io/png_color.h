@@ -24,8 +24,8 @@ struct PngColor {
 };
 
 // The colour space, from the chunk cICP, else from gAMA and cHRM, which sRGB overrides; they
-// approximate an ICC profile (iCCP), which is not read. Throws std::runtime_error for a cICP whose
-// samples cannot be decoded here, such as PQ and HLG.
+// approximate an ICC profile (pngProfile()), which takes precedence but is not applied. Throws
+// std::runtime_error for a cICP whose samples cannot be decoded here, such as PQ and HLG.
 PngColor pngColor(std::span<const uint8_t> file);
 
 }  // namespace chromeball

@@ -12,9 +12,11 @@
 #include "base/file.h"
 #include "image/chromaticities.h"
 #include "image/image.h"
+#include "image/io/color_channels.h"
 #include "image/io/decode_image.h"
 #include "image/io/exif.h"
 #include "image/io/exr_input.h"
+#include "image/io/icc_profile.h"
 #include "image/io/image_format.h"
 #include "image/io/imageio_module.h"
 #include "image/io/metadata_blocks.h"
@@ -91,16 +93,7 @@ void readSamples(SampleReader& reader, const DecodeSample& decode, Image& image)
   });
 }
 
-// Sets file.primaries and file.transfer too.
-DecodeSample sampleDecoder(ImageFormat format, std::span<const uint8_t> bytes,
-                           IntegerTexels integers, ImageFile& file) {
-  if (integers == IntegerTexels::Linear) return [](float sample) { return sample; };
-  PngColor color = format == ImageFormat::Png ? pngColor(bytes) : PngColor{};
-  file.primaries = color.primaries;
-  if (integers == IntegerTexels::Srgb) return std::move(color.decode);
-  file.transfer = color.transfer;
-  return [](float sample) { return sample; };
-}
+float asStored(float sample) { return sample; }
 
 ImageFile readHdr(const fs::path& path) {
   RadianceHdr hdr = readRadianceHdr(path);
@@ -114,39 +107,42 @@ ImageFile readHdr(const fs::path& path) {
   return file;
 }
 
-// Warns of a profile (ISO 15076-1) unless its description says sRGB, in ASCII or UTF-16. For a PNG
-// only the name is searched, since the profile itself is compressed. `space`: the space that
-// colours are assumed to have.
-void warnOfProfile(std::span<const uint8_t> profile, const char* space, const fs::path& path,
-                   Messages& messages) {
-  using namespace std::string_view_literals;
-  const std::string_view text(reinterpret_cast<const char*>(profile.data()), profile.size());
-  if (text.empty() || text.find("sRGB") != text.npos || text.find("s\0R\0G\0B"sv) != text.npos)
-    return;
-  messages.push_back({Message::Kind::Warning,
-                      fmt::format("{}: has a colour profile that is not applied; its colours are "
-                                  "read as {}",
-                                  path.string(), space)});
+// Warns of a profile that is not known to state what the texels are read as: `decode`,
+// `file.primaries`, in words `space`.
+void warnOfProfile(std::span<const uint8_t> bytes, const DecodeSample& decode, const char* space,
+                   const fs::path& path, ImageFile& file) {
+  const IccProfile profile(bytes);
+  if (profile.decodesBy(decode) && profile.has(file.primaries)) return;
+  file.messages.push_back({Message::Kind::Warning,
+                           fmt::format("{}: has a colour profile that is not applied; its colours "
+                                       "are read as {}",
+                                       path.string(), space)});
 }
 
-// Warns too of colours that the file's EXIF states, where no profile tells which they are. A PNG
-// has chunks for that.
-void warnOfColors(std::span<const uint8_t> profile, std::span<const uint8_t> file,
-                  const fs::path& path, Messages& messages) {
-  warnOfProfile(profile, "sRGB", path, messages);
-  if (profile.empty() && exifStatesOtherColors(file))
-    messages.push_back({Message::Kind::Warning,
-                        fmt::format("{}: its EXIF states other colours than those of sRGB, such as "
-                                    "Adobe RGB; they are read as sRGB",
-                                    path.string())});
-}
-
-// The colour profile of an image of light; empty if other chunks of a PNG state what it would.
-std::span<const uint8_t> unreadProfile(ImageFormat format, std::span<const uint8_t> bytes) {
-  if (format == ImageFormat::Jpeg) return jpegProfile(bytes);
-  for (const char* chunk : {"cICP", "sRGB", "cHRM", "gAMA"})
-    if (!pngChunk(bytes, chunk).empty()) return {};
-  return pngChunk(bytes, "iCCP");
+// `color`: what an integer file states beside its profile and its EXIF block. Sets the file's
+// primaries and, for levels, its transfer.
+void readColors(PngColor color, const std::optional<std::vector<uint8_t>>& profile,
+                std::span<const uint8_t> exif, IntegerTexels integers, const fs::path& path,
+                ImageFile& file) {
+  file.primaries = color.primaries;
+  const bool isSrgb = color.transfer.value_or(Transfer::Srgb) == Transfer::Srgb && !color.primaries;
+  if (integers == IntegerTexels::Levels) {
+    if (profile && !color.transfer) {
+      if (IccProfile(*profile).decodesBy(srgbToLinear)) color.transfer = Transfer::Srgb;
+      if (IccProfile(*profile).decodesBy(asStored))
+        color.transfer = Transfer::Linear, color.decode = asStored;
+    }
+    file.transfer = color.transfer;
+  }
+  if (profile) {
+    warnOfProfile(*profile, color.decode, isSrgb ? "sRGB" : "its gAMA or cHRM states them", path,
+                  file);
+  } else if (exifStatesOtherColors(exif)) {
+    file.messages.push_back({Message::Kind::Warning,
+                             fmt::format("{}: its EXIF states other colours than those of sRGB, "
+                                         "such as Adobe RGB; they are read as sRGB",
+                                         path.string())});
+  }
 }
 
 ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels integers) {
@@ -171,11 +167,18 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   file.bits = layout.bits;
   file.image = Image(layout.width, layout.height, layout.channels);
   warnOfPixels(pixelAspectRatio(bytes), path, file.messages);
-  const DecodeSample decode = sampleDecoder(format, bytes, integers, file);
-  if (integers != IntegerTexels::Linear)
-    warnOfColors(unreadProfile(format, bytes),
-                 format == ImageFormat::Jpeg ? std::span(bytes) : std::span<const uint8_t>(), path,
-                 file.messages);
+  DecodeSample decode = asStored;
+  if (integers != IntegerTexels::Linear) {
+    const PngColor color = format == ImageFormat::Png ? pngColor(bytes) : PngColor{};
+    if (integers == IntegerTexels::Srgb) decode = color.decode;
+    // A PNG has chunks for what EXIF says of colours; cICP has precedence over the profile.
+    if (format == ImageFormat::Jpeg)
+      readColors(color, jpegProfile(bytes), bytes, integers, path, file);
+    else if (pngChunk(bytes, "cICP").empty())
+      readColors(color, pngProfile(bytes), {}, integers, path, file);
+    else
+      readColors(color, {}, {}, integers, path, file);
+  }
   if (layout.bits == 8)
     readSamples<uint8_t>(*reader, decode, file.image);
   else
@@ -186,18 +189,25 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
 }
 
 // Reads the colour space of a TIFF of light; `file` has its kind of numbers.
-void readTiffColors(std::span<const uint8_t> bytes, const fs::path& path, ImageFile& file) {
+void readTiffColors(std::span<const uint8_t> bytes, IntegerTexels integers, const fs::path& path,
+                    ImageFile& file) {
   constexpr uint16_t kProfileTag = 34675;
   const TiffBlock tiff(bytes);
-  const std::span<const uint8_t> profile = tiff.bytes(tiff.firstDirectory(), kProfileTag);
-  file.primaries = tiffPrimaries(bytes);
+  const std::span<const uint8_t> data = tiff.bytes(tiff.firstDirectory(), kProfileTag);
+  std::optional<std::vector<uint8_t>> profile;
+  if (!data.empty()) profile.emplace(data.begin(), data.end());
   if (statesGrey(bytes) && file.channels == std::vector<std::string>{"R", "G", "B"})
     file.messages.push_back({Message::Kind::Warning,
                              fmt::format("{}: says that it is grey, but has three samples; they "
                                          "are read as red, green and blue",
                                          path.string())});
-  if (!file.integers) return warnOfProfile(profile, "linear Rec. 709", path, file.messages);
-  warnOfColors(profile, bytes, path, file.messages);
+  const std::optional<Chromaticities> primaries = tiffPrimaries(bytes);
+  if (!file.integers) {
+    file.primaries = primaries;
+    if (profile) warnOfProfile(*profile, asStored, "linear Rec. 709", path, file);
+    return;
+  }
+  readColors({.primaries = primaries}, profile, bytes, integers, path, file);
   if (hasTransferTable(bytes))
     file.messages.push_back(
         {Message::Kind::Warning, fmt::format("{}: has a TransferFunction that is not applied; its "
@@ -227,7 +237,8 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   file.integers = header.integerBits > 0;
   file.bits = header.integerBits;
   warnOfPixels(pixelAspectRatio(bytes), path, file.messages);
-  if (!file.integers || integers != IntegerTexels::Linear) readTiffColors(bytes, path, file);
+  if (!file.integers || integers != IntegerTexels::Linear)
+    readTiffColors(bytes, integers, path, file);
   // A strip may be the whole image, which the module decodes in memory of its own; grey becomes
   // RGB.
   constexpr double kCopies = 4;
@@ -243,6 +254,19 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   if (header.unassociatedAlpha) associate(file.image, header.alphaChannel);
   file.image = oriented(std::move(file.image), exifOrientation(bytes));
   return file;
+}
+
+// Whether the file has a colour of three channels, which its primaries are those of.
+bool hasConvertedColor(const ImageFile& file) {
+  const PartChannels part{file.part, file.channels};
+  if (const auto color = findColorChannels({&part, 1}); color && color->channels.size() == 3)
+    return true;
+  const auto has = [&](const std::string& channel) {
+    return std::ranges::count(file.channels, channel) > 0;
+  };
+  return std::ranges::any_of(layerNames(file), [&](const std::string& layer) {
+    return isColorLayer(layer) && has(layer + ".R") && has(layer + ".G") && has(layer + ".B");
+  });
 }
 
 }  // namespace
@@ -293,7 +317,7 @@ ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
         path.string(), file.primaries->red.x, file.primaries->red.y, file.primaries->green.x,
         file.primaries->green.y, file.primaries->blue.x, file.primaries->blue.y,
         file.primaries->white.x, file.primaries->white.y);
-  if (file.primaries && !isRec709(*file.primaries))
+  if (file.primaries && !isRec709(*file.primaries) && hasConvertedColor(file))
     file.messages.push_back(conversionNote(path, *file.primaries));
   return file;
 }

@@ -143,7 +143,7 @@ std::optional<Message> uncoveredLight(const std::filesystem::path& path, const I
 
 // The numbers in the colour's channels that a format cannot hold.
 struct NumbersBeyond {
-  size_t negative = 0, tooLarge = 0, invalid = 0, count = 0;
+  size_t negative = 0, tooLarge = 0, infinite = 0, nan = 0, count = 0;
   float least = 0, largest = 0;
 
   NumbersBeyond(const Image& color, float limit) {
@@ -159,11 +159,13 @@ struct NumbersBeyond {
   void add(float number, float limit) {
     if (number < 0) ++negative, least = std::min(least, number);
     if (number > limit) ++tooLarge, largest = std::max(largest, number);
-    if (!std::isfinite(number)) ++invalid;
+    if (std::isinf(number)) ++infinite;
+    if (std::isnan(number)) ++nan;
   }
 };
 
-// Light above white is not reported for a .png: it is clipped like any bright surface.
+// Light above white, also infinite light, is not reported for a .png: it is clipped like any bright
+// surface.
 Messages numbersLost(const std::filesystem::path& path, const Image& color, bool isHdr) {
   const NumbersBeyond beyond(color, isHdr ? kMaxRgbe : std::numeric_limits<float>::infinity());
   Messages messages;
@@ -174,10 +176,13 @@ Messages numbersLost(const std::filesystem::path& path, const Image& color, bool
                                       path.string(), beyond.percent(numbers), what)});
   };
   add(beyond.negative, fmt::format("negative, down to {:.3g}, and become 0", beyond.least));
-  if (!isHdr) return messages;
+  if (!isHdr) {
+    add(beyond.nan, "NaN, and become 0");
+    return messages;
+  }
   add(beyond.tooLarge,
       fmt::format("above {:.3g}, up to {:.3g}, and are cut", kMaxRgbe, beyond.largest));
-  add(beyond.invalid, "NaN or infinite, and become 0");
+  add(beyond.nan + beyond.infinite, "NaN or infinite, and become 0");
   return messages;
 }
 

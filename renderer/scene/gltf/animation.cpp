@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "base/text.h"
@@ -111,13 +112,19 @@ std::vector<double> unitRotation(const GltfFile& file, const Track& track, size_
   return {q.x, q.y, q.z, q.w};
 }
 
+// Whether `seconds` is before the key. Of a frame's time, which is a double, the key is a rounded
+// one: N * (1 / 24) in floats exceeds the double N / 24 by up to 1.5 units in the last place.
+bool isBefore(double seconds, float key) {
+  constexpr double kRounding = 2 * double(std::numeric_limits<float>::epsilon());
+  return key - seconds > kRounding * std::fabs(key);
+}
+
 std::vector<double> valueAt(const GltfFile& file, const Track& track, double seconds,
                             bool isRotation, const std::string& where) {
   const auto& times = track.times;
-  const auto after = std::upper_bound(times.begin(), times.end(), seconds,
-                                      [](double t, float key) { return t < key; });
+  const auto after = std::upper_bound(times.begin(), times.end(), seconds, isBefore);
   const size_t i = after == times.begin() ? 0 : size_t(after - times.begin()) - 1;
-  double fraction = 0;  // position between keys i and i + 1
+  double fraction = 0;  // position between keys i and i + 1; below 0 within the rounding of key i
   if (after != times.begin() && after != times.end())
     fraction = (seconds - times[i]) / (double(times[i + 1]) - times[i]);
 
@@ -242,6 +249,14 @@ void addDisplacements(GltfFile& file, const std::map<std::string, int>& target, 
     for (int k = 0; k < 3; ++k) array[i][k] += float(weight) * displacements[i][k];
 }
 
+// Colours and texture coordinates may have displacements too (glTF 2.0, 3.7.2.2).
+void warnOfUnmovedAttributes(GltfFile& file, const std::map<std::string, int>& target) {
+  for (const auto& [name, accessor] : target)
+    if (name.starts_with("COLOR_") || name.starts_with("TEXCOORD_"))
+      file.warnOnce(fmt::format("ignored: {} of morph targets; it keeps its unmorphed values",
+                                printableName(name)));
+}
+
 // The blended joint matrix of every vertex.
 std::vector<glm::dmat4> blendJoints(GltfFile& file, const tinygltf::Primitive& primitive,
                                     std::span<const glm::dmat4> joints, const std::string& where,
@@ -287,6 +302,7 @@ void applyMorphTargets(GltfFile& file, const tinygltf::Primitive& primitive,
     if (weights[i] == 0) continue;
     if (!std::isfinite(weights[i])) file.fail("{}: morph weight {} is not finite", where, i);
     const std::string target = fmt::format("{}.targets[{}]", where, i);
+    warnOfUnmovedAttributes(file, primitive.targets[i]);
     addDisplacements(file, primitive.targets[i], "POSITION", weights[i], target, mesh.positions);
     addDisplacements(file, primitive.targets[i], "NORMAL", weights[i], target, mesh.normals);
     addDisplacements(file, primitive.targets[i], "TANGENT", weights[i], target, mesh.tangents);

@@ -31,7 +31,8 @@ struct Pose {
   std::span<const glm::dmat4> joints;  // joint matrices of the skin; empty: not skinned
 };
 
-// Adds weights[i] times morph target i to positions, normals and tangents (glTF 2.0, 3.7.2.2).
+// Adds weights[i] times morph target i to positions, normals and tangents (glTF 2.0, 3.7.2.2);
+// warns of other displacements.
 void applyMorphTargets(GltfFile& file, const tinygltf::Primitive& primitive,
                        std::span<const double> weights, const std::string& where, Mesh& mesh);
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/io/decode_image.h"
+#include "image/size_limits.h"
 #include "probe/convert.h"
 #include "probe/edit.h"
 #include "probe/solid_angle.h"
@@ -157,10 +158,12 @@ Image readStrip(const GltfFile& file, const std::array<int, kFaces>& faces) {
     const int image = faces[size_t(i)];
     Bytes storage;
     const std::string name = file.describeImage(image);
-    DecodedImage d = decodeImage(file.image(image, storage), name);
-    if (d.width != d.height || d.width > kMaxFace)
-      throwInput("{}: is {} x {}; the face of an environment must be square, at most {} x {}", name,
-                 d.width, d.height, kMaxFace, kMaxFace);
+    DecodedImage d = decodeImage(file.image(image, storage), name, [&](const SampleLayout& face) {
+      if (face.width != face.height || face.width > kMaxFace)
+        throwInput("{}: is {} x {}; the face of an environment must be square, at most {} x {}",
+                   name, face.width, face.height, kMaxFace, kMaxFace);
+      checkImageMemory(name, int64_t(kFaces) * face.width, face.height, 4);  // of all faces
+    });
     grids[size_t(i)] = {d.width, d.height, std::move(d.texels8), std::move(d.texelsFloat)};
   });
   const int n = grids[0].width;
