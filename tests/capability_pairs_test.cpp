@@ -12,7 +12,7 @@
 #include "parts/checkpoint.h"
 #include "probe/synth.h"
 #include "scene/builder/scene_builder.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "session/session.h"
 #include "temporary_folder.h"
 #include "test_scene.h"
@@ -166,7 +166,7 @@ Image ofParts(const D& whole, const std::vector<D>& parts) {
   FinishPlan plan;
   for (const D& part : parts) {
     const LoadedScene own = loadScene(part);
-    const JobResult result = renderJob(own);
+    const FinishedRender result = renderLoaded(own);
     if (!sum) {
       plan = finishPlan(loaded, result.render);
       sum.emplace(plan.settings, plan.layers());
@@ -185,8 +185,8 @@ Image interrupted(const D& description) {
     const LoadedScene loaded = loadScene(d);
     const PreparedScene prepared = prepareScene(loaded);
     std::atomic<bool> stop = false;
-    JobControl control(loaded, [&](const RenderState& state) { stop = state.done < 16; });
-    JobResult result = renderJob(loaded, prepared, nothing, stop, &control);
+    CheckpointControl control(loaded, [&](const RenderState& state) { stop = state.done < 16; });
+    FinishedRender result = renderLoaded(loaded, prepared, nothing, stop, &control);
     if (!result.render.interrupted || round > 20) return result.color();
     d.run.resumes = std::filesystem::exists(*d.run.checkpoint);
   }
@@ -219,7 +219,7 @@ Image rendered(const Render& r) {
     }
   if (!parts.empty()) return ofParts(r.description, parts);
   if (r.interrupts) return interrupted(r.description);
-  if (!r.inSession) return renderJob(loadScene(r.description)).color();
+  if (!r.inSession) return renderLoaded(loadScene(r.description)).color();
   Session session(r.description);
   session.start();
   return session.wait().color();
@@ -234,7 +234,7 @@ std::vector<Image> repeats(Render r, int count, uint64_t firstSeed) {
     const PreparedScene prepared = prepareScene(loaded);
     for (int i = 0; i < count; ++i) {
       loaded.description.settings.seed = firstSeed + uint64_t(i);
-      images.push_back(renderJob(loaded, prepared, nothing, kGoesOn).color());
+      images.push_back(renderLoaded(loaded, prepared, nothing, kGoesOn).color());
     }
     return images;
   }

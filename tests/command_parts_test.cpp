@@ -274,9 +274,9 @@ TEST(SlowParts, RefuseWhatIsNoPart) {
 TEST(SlowCheckpoint, GoesOnAfterAnInterrupt) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr";
-  const Words job{"--samples", "1000", "--seed", "3", "--guide", "off"};
-  const std::string whole = parts.render("whole.exr", job);
-  Words resumed = job;
+  const Words description{"--samples", "1000", "--seed", "3", "--guide", "off"};
+  const std::string whole = parts.render("whole.exr", description);
+  Words resumed = description;
   resumed.insert(resumed.end(), {"--checkpoint", checkpoint, "--resume", "--progress"});
   int interrupts = 0;
   for (CommandResult result; interrupts < 100; ++interrupts) {
@@ -293,7 +293,7 @@ TEST(SlowCheckpoint, GoesOnAfterAnInterrupt) {
   Words other = resumed;
   other.insert(other.end(), {"--max-transmission-depth", "9"});
   expectError(parts.words(other, parts.out / "o.exr"), "`max-transmission-depth` was 64 and is 9");
-  Words again = job;
+  Words again = description;
   again.insert(again.end(), {"--checkpoint", checkpoint});
   expectError(parts.words(again, parts.out / "o.exr"), "--resume");
 }
@@ -315,12 +315,12 @@ TEST(SlowCheckpoint, OfAShardKeepsItsNumberOfSamples) {
 TEST(SlowCheckpoint, SurvivesKills) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr", image = parts.out / "image.exr";
-  const Words job{"--samples", "250", "--size", "24x16"};
+  const Words description{"--samples", "250", "--size", "24x16"};
   const std::string whole = parts.out / "whole.exr";
   const Stopwatch watch;
-  EXPECT_EQ(runExecutable(parts.words(job, whole)).status, 0);
+  EXPECT_EQ(runExecutable(parts.words(description, whole)).status, 0);
   const double seconds = watch.seconds();
-  Words resumed = job;
+  Words resumed = description;
   resumed.insert(resumed.end(),
                  {"--checkpoint", checkpoint, "--resume", "--checkpoint-every", "0.01"});
   int kills = 0, writes = 0;
@@ -360,9 +360,10 @@ TEST(SlowCheckpoint, IsOfOneProcess) {
 
 TEST(SlowCheckpoint, TellsThatItHasMoreSamplesThanAskedFor) {
   const Parts parts;
-  const Words job{"--checkpoint", parts.out / "c.exr", "--resume", "--guide", "off", "--samples"};
+  const Words description{"--checkpoint", parts.out / "c.exr", "--resume", "--guide",
+                          "off",          "--samples"};
   const auto render = [&](const std::string& samples) {
-    Words words = job;
+    Words words = description;
     words.push_back(samples);
     return runCommand(parts.words(words, parts.out / "o.exr"));
   };

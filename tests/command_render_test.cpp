@@ -708,13 +708,13 @@ TEST(CommandRender, TheHeaderHasTheCameraMatrices) {
   EXPECT_NEAR(seen.y, 0.5 - 0.25 / (2 * half * 4), 1e-6);
   EXPECT_LT(transformed("worldToNDC", {-2, 0, 0}).z, seen.z) << "z must grow with distance";
 
-  const json job = scene.stats("a.json").at("job");
-  EXPECT_EQ(job.at("cameraPosition"), json({-4.5, 0, 0}));
-  EXPECT_NEAR(job.at("cameraFov").get<double>(), glm::degrees(0.8), 1e-4);
-  EXPECT_EQ(job.at("worldToCamera").size(), 16u);
-  EXPECT_EQ(job.at("probe"), scene.gradient);
-  EXPECT_EQ(job.at("probe-found"), "lat-long");
-  EXPECT_EQ(job.at("mis"), "balance");
+  const json description = scene.stats("a.json").at("job");
+  EXPECT_EQ(description.at("cameraPosition"), json({-4.5, 0, 0}));
+  EXPECT_NEAR(description.at("cameraFov").get<double>(), glm::degrees(0.8), 1e-4);
+  EXPECT_EQ(description.at("worldToCamera").size(), 16u);
+  EXPECT_EQ(description.at("probe"), scene.gradient);
+  EXPECT_EQ(description.at("probe-found"), "lat-long");
+  EXPECT_EQ(description.at("mis"), "balance");
 }
 
 TEST(CommandRender, TheHeaderMapsNodeAndMaterialIdsToNames) {

@@ -225,11 +225,11 @@ TEST(House, ClockThatCanBeSetIsForDatesAlone) {
       R"(CLOCK_REALTIME|\btime\((nullptr|NULL|0|&))";
   for (const fs::path& path : projectFiles({".h", ".cpp"}))
     if (path.generic_string().starts_with("renderer/") &&
-        path != "renderer/session/job_report.cpp" && path != "renderer/image/io/exr_rows.cpp") {
+        path != "renderer/session/render_report.cpp" && path != "renderer/image/io/exr_rows.cpp") {
       EXPECT_FALSE(containsMatch(contents(kSourceDir / path), kSettable)) << path;
     }
-  EXPECT_TRUE(
-      containsMatch(contents(kSourceDir / fs::path("renderer/session/job_report.cpp")), kSettable));
+  EXPECT_TRUE(containsMatch(contents(kSourceDir / fs::path("renderer/session/render_report.cpp")),
+                            kSettable));
 }
 
 // The library is a guest in its process: it prints nothing, ends nothing, takes no signals, moves

@@ -15,6 +15,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image/tonemap.h"
+#include "instrumented.h"
 #include "probe/capture/merge_photographs.h"
 #include "probe/load.h"
 #include "run_command.h"
@@ -432,6 +433,7 @@ TEST(ImageHeaders, UncoveredLightIsCounted) {
 
 // An image that does not fit into the process's memory is refused by its header, at once.
 TEST(SlowImageHeaders, ImagesLargerThanTheMemoryAreRefused) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
   const TemporaryFolder folder;
   const std::string pfm = folder / "a.pfm", hdr = folder / "a.hdr", exr = folder / "a.exr";
   std::ofstream(pfm) << "PF\n6000 3000\n-1\n";

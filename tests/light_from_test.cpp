@@ -17,7 +17,7 @@
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "run_command.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "shared_data.h"
 #include "small_model.h"
 #include "test_scene.h"
@@ -69,9 +69,9 @@ std::vector<double> tileSums(const WhiteFloor& folder, const std::string& strate
   file.settings.set("lighting.strategy", strategy);
   file.settings.set("lighting.from", part);
   file.settings.set("output.file", std::vector<std::string>{folder / "o.exr"});
-  RenderDescription job = planJob(file);
-  const LoadedScene loaded = loadScene(job);
-  const JobResult result = renderJob(loaded);
+  RenderDescription description = planRender(file);
+  const LoadedScene loaded = loadScene(description);
+  const FinishedRender result = renderLoaded(loaded);
   std::vector<double> sums(8);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 16; ++x)

@@ -13,7 +13,7 @@
 #include "probe/synth.h"
 #include "run_command.h"
 #include "scene/camera.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "shared_data.h"
 #include "temporary_folder.h"
 #include "test_probes.h"
@@ -102,9 +102,9 @@ Settings settingsOf(double time, std::optional<double> shutter, uint64_t seed, u
 }
 
 Image rendered(const std::string& path, const Settings& settings) {
-  RenderDescription job = planJob(openScene(path), settings);
-  const LoadedScene loaded = loadScene(job);
-  return renderJob(loaded).color();
+  RenderDescription description = planRender(openScene(path), settings);
+  const LoadedScene loaded = loadScene(description);
+  return renderLoaded(loaded).color();
 }
 
 // The square moves by its width w: at x, the fraction of the time for which it covers x rises from
@@ -457,10 +457,10 @@ TEST(MotionBlur, WarnsOfWhatIsTurnedInsideOut) {
     const std::string path = w.save();
     Settings settings = settingsOf(0, 1.0, 1, 2, {8, 8});
     settings.set("camera.shutter_steps", uint64_t(1));
-    RenderDescription job = planJob(openScene(path), settings);
+    RenderDescription description = planRender(openScene(path), settings);
     std::vector<std::string> texts;
-    job.lamps.push_back({.ambient = AmbientLamp{Rgb(1)}});
-    const LoadedScene loaded = loadScene(job);
+    description.lamps.push_back({.ambient = AmbientLamp{Rgb(1)}});
+    const LoadedScene loaded = loadScene(description);
     for (const Message& message : loaded.messages) texts.push_back(message.text);
     EXPECT_TRUE(std::ranges::any_of(texts, [](const std::string& text) {
       return text.find("`glove` appears, vanishes or is mirrored") != std::string::npos;

@@ -8,7 +8,7 @@
 #include "image/io/read_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "temporary_folder.h"
 #include "test_probes.h"
 
@@ -67,9 +67,9 @@ Settings openShutterFor(double seconds, uint64_t steps) {
 }
 
 LoadedScene loaded(const std::string& path, const Settings& settings) {
-  RenderDescription job = planJob(openScene(path), settings);
-  job.lamps.push_back({.ambient = AmbientLamp{Rgb(1)}});
-  return loadScene(job);
+  RenderDescription description = planRender(openScene(path), settings);
+  description.lamps.push_back({.ambient = AmbientLamp{Rgb(1)}});
+  return loadScene(description);
 }
 
 bool says(const LoadedScene& scene, const std::string& text) {

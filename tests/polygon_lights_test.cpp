@@ -20,7 +20,7 @@
 #include "probe/polygon_source.h"
 #include "probe/synth.h"
 #include "run_command.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "sphere_test.h"
 #include "strategy_samples.h"
 #include "test_scene.h"

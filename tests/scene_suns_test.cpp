@@ -13,7 +13,7 @@
 #include "measure/statistics.h"
 #include "probe/synth.h"
 #include "run_command.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "small_model.h"
 #include "sphere_test.h"
 #include "strategy_samples.h"

@@ -9,7 +9,7 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "run_command.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "shared_data.h"
 #include "trace/built_geometry.h"
 
@@ -231,7 +231,7 @@ RenderDescription jobAt(const std::string& scene, double seconds, double degrees
   given.set("frames", std::string("0:9"));
   given.set("model.time", seconds);
   given.set("orbit", degrees);
-  return planJob(openScene(scene), given);
+  return planRender(openScene(scene), given);
 }
 
 TEST(Sequence, LoadsAndBuildsOnceWhatDoesNotChange) {
@@ -294,8 +294,8 @@ TEST(SlowSequence, BuildsInstancesOnce) {
   FrameScene scene;
   std::vector<int> builds;
   for (const double seconds : {0.0, 0.5, 1.0, 1.5}) {
-    RenderDescription job = jobAt(path, seconds);
-    scene.show(job);
+    RenderDescription description = jobAt(path, seconds);
+    scene.show(description);
     builds.push_back(scene.prepared().world->accel.built()->builds());
   }
   // The mesh of two instances, and the second triangle alone; from 1 s on its mesh has two as well.
@@ -329,8 +329,8 @@ TEST(Sequence, LampsAreBuiltOnce) {
       "radiance = 5\n");
   FrameScene scene;
   for (const double seconds : {0.0, 0.5, 1.0}) {
-    RenderDescription job = jobAt(path, seconds);
-    scene.show(job);
+    RenderDescription description = jobAt(path, seconds);
+    scene.show(description);
     EXPECT_EQ(scene.prepared().world->accel.built()->builds(), 1) << seconds;
   }
 }

@@ -10,7 +10,7 @@
 #include "render/render_state.h"
 #include "scene/builder/scene_builder.h"
 #include "session/live_image.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "session/session.h"
 #include "test_scene.h"
 
@@ -177,7 +177,7 @@ TEST(SessionCallbacks, LiveImageIsThatOfTheWhole) {
       texels.push_back(soFar->color().texels);
       held.push_back(std::move(soFar));
     };
-    const JobResult result = renderJob(loaded, prepared, watch, never, &control);
+    const FinishedRender result = renderLoaded(loaded, prepared, watch, never, &control);
     ASSERT_EQ(held.size(), 4u);
     for (size_t i = 0; i < held.size(); ++i) EXPECT_EQ(held[i]->color().texels, texels[i]);
     const auto last = image.update(0.5);

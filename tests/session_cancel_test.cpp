@@ -14,7 +14,7 @@
 #include "run_command.h"
 #include "scene/builder/scene_builder.h"
 #include "scene/gltf/model_cache.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "session/session.h"
 #include "test_scene.h"
 
@@ -55,7 +55,7 @@ Image prepareAndRender(const RenderDescription& description, ModelCache& cache,
     prepared = prepareScene(*loaded);
   }
   const std::atomic<bool> never = false;
-  return renderJob(
+  return renderLoaded(
              *loaded, prepared, [](double) {}, never)
       .color();
 }
@@ -187,7 +187,7 @@ TEST_F(SessionCancel, AChangeThatIsCancelledLosesNothing) {
   EXPECT_FALSE(session.work().loadedScene);
   stage = "";
   session.start();
-  EXPECT_EQ(session.wait().color().texels, renderJob(loadScene(d)).color().texels);
+  EXPECT_EQ(session.wait().color().texels, renderLoaded(loadScene(d)).color().texels);
   EXPECT_FALSE(session.work().loadedScene);
   EXPECT_TRUE(session.work().preparedLighting);
 }

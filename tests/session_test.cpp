@@ -14,8 +14,8 @@
 #include "run_command.h"
 #include "scene/builder/scene_builder.h"
 #include "scene/gltf/model_cache.h"
-#include "session/job_description.h"
-#include "session/run_job.h"
+#include "session/image_header.h"
+#include "session/render_loaded.h"
 #include "test_scene.h"
 
 namespace chromeball::session_test {
@@ -66,7 +66,7 @@ Image sunnyMap() {
 }
 
 std::vector<float> freshRender(const RenderDescription& description) {
-  return renderJob(loadScene(description)).color().texels;
+  return renderLoaded(loadScene(description)).color().texels;
 }
 
 TEST(Session, GivesTheBitsOfARenderInTheForeground) {

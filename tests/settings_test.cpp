@@ -269,7 +269,7 @@ TEST_F(SettingsInAFile, OptionsOverrideTheFileAndTheFileOverridesDefaults) {
   std::ofstream(path_)
       << "model = 'ball.glb'\n[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n"
          "[render]\nsamples = 5\nnoise = 2\nmax_depth = 3\nseed = 9\n";
-  const RenderDescription byFile = planJob(openScene(path_));
+  const RenderDescription byFile = planRender(openScene(path_));
   EXPECT_EQ(byFile.settings.samples, 5u);
   EXPECT_EQ(byFile.settings.noiseLimit, 0.02);
   EXPECT_TRUE(byFile.camera.placed);
@@ -279,19 +279,19 @@ TEST_F(SettingsInAFile, OptionsOverrideTheFileAndTheFileOverridesDefaults) {
   over.set("render.seed", uint64_t(7));
   over.parse("render.time", "1.5");
   over.set("camera.name", std::string("Front"), "--camera");
-  const RenderDescription job = planJob(openScene(path_), over);
-  EXPECT_EQ(job.settings.seed, 7u);
-  EXPECT_EQ(job.settings.maxDepth, 3);
-  EXPECT_EQ(job.settings.timeLimit, 1.5);
-  EXPECT_FALSE(job.settings.noiseLimit) << "--time replaces the limits of the file";
-  EXPECT_EQ(job.settings.samples, kMaxSamples);
-  EXPECT_FALSE(job.camera.placed);
+  const RenderDescription description = planRender(openScene(path_), over);
+  EXPECT_EQ(description.settings.seed, 7u);
+  EXPECT_EQ(description.settings.maxDepth, 3);
+  EXPECT_EQ(description.settings.timeLimit, 1.5);
+  EXPECT_FALSE(description.settings.noiseLimit) << "--time replaces the limits of the file";
+  EXPECT_EQ(description.settings.samples, kMaxSamples);
+  EXPECT_FALSE(description.camera.placed);
 }
 
 TEST(Settings, DefaultsEqualThoseOfRenderSettings) {
   SceneFile scene;
   scene.models.push_back({"a.glb", {}, {}});
-  const RenderSettings planned = planJob(scene).settings, defaults;
+  const RenderSettings planned = planRender(scene).settings, defaults;
   EXPECT_EQ(planned.samples, defaults.samples);
   EXPECT_EQ(planned.maxDepth, defaults.maxDepth);
   EXPECT_EQ(planned.maxTransmissionDepth, defaults.maxTransmissionDepth);

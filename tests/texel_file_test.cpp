@@ -21,7 +21,7 @@
 #include "json_file.h"
 #include "run_command.h"
 #include "scene/texture.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "shared_data.h"
 
 namespace chromeball::texel_file_test {
@@ -244,11 +244,11 @@ TEST(TexelFile, AFailureToReadEndsTheRender) {
   given.set("probe.file", kProbe);
   given.set("render.size", ImageSize{200, 200});
   given.set("render.samples", uint64_t(1));
-  RenderDescription job = planJob(openScene(writeTexturedModel(w, 1, 512)), given);
-  const LoadedScene loaded = loadScene(job);
+  RenderDescription description = planRender(openScene(writeTexturedModel(w, 1, 512)), given);
+  const LoadedScene loaded = loadScene(description);
   ASSERT_EQ(ftruncate(openTexelFile(), 0), 0);
   try {
-    renderJob(loaded);
+    renderLoaded(loaded);
     ADD_FAILURE() << "the texels are lost";
   } catch (const RunError& error) {
     EXPECT_NE(std::string(error.what()).find("cannot be read"), std::string::npos) << error.what();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Descriptions from scene files and models:
 //
-//   RenderDescription description = planJob(openScene("scene.toml"));
+//   RenderDescription description = planRender(openScene("scene.toml"));
 #pragma once
 
 #include "front/plan_render.h"

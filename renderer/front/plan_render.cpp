@@ -214,35 +214,35 @@ OutputDescription plannedOutput(const Settings& s) {
 
 }  // namespace
 
-RenderDescription planJob(SceneFile scene, const Settings& over) {
+RenderDescription planRender(SceneFile scene, const Settings& over) {
   overrideSettings(scene, over);
-  RenderDescription job;
+  RenderDescription description;
   const Settings& s = scene.settings;
   for (const Setting& setting : settingTable())
     if (const auto* given = s.find(setting.name()))
-      job.origins.set(setting.name(), given->location);
-  job.origins.add(scene.origins);
-  job.camera = plannedCamera(scene);
-  job.probe = plannedProbe(scene);
-  if (scene.plateScale) job.origins.set("probe.scale", *scene.plateScale);
-  job.lighting = plannedLighting(s);
-  job.settings = integratorSettings(scene);
-  job.size = s.getIfGiven<ImageSize>("render.size");
-  job.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));
-  job.straightGlassShadows = s.get<std::string>("render.glass_shadows") == "straight";
-  job.output = plannedOutput(s);
-  job.output.makesFolders = !over.has("output.file");
-  job.run = plannedRun(s);
-  job.path = std::move(scene.path);
-  job.models = std::move(scene.models);
-  job.lamps = std::move(scene.lamps);
-  job.sources = std::move(scene.sources);
-  job.lightLists = std::move(scene.lightLists);
-  job.surroundings = std::move(scene.surroundings);
-  job.warnings = std::move(scene.warnings);
-  if (scene.composite) planComposite(s, std::move(*scene.composite), job);
-  checkCapabilities(job);
-  return job;
+      description.origins.set(setting.name(), given->location);
+  description.origins.add(scene.origins);
+  description.camera = plannedCamera(scene);
+  description.probe = plannedProbe(scene);
+  if (scene.plateScale) description.origins.set("probe.scale", *scene.plateScale);
+  description.lighting = plannedLighting(s);
+  description.settings = integratorSettings(scene);
+  description.size = s.getIfGiven<ImageSize>("render.size");
+  description.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));
+  description.straightGlassShadows = s.get<std::string>("render.glass_shadows") == "straight";
+  description.output = plannedOutput(s);
+  description.output.makesFolders = !over.has("output.file");
+  description.run = plannedRun(s);
+  description.path = std::move(scene.path);
+  description.models = std::move(scene.models);
+  description.lamps = std::move(scene.lamps);
+  description.sources = std::move(scene.sources);
+  description.lightLists = std::move(scene.lightLists);
+  description.surroundings = std::move(scene.surroundings);
+  description.warnings = std::move(scene.warnings);
+  if (scene.composite) planComposite(s, std::move(*scene.composite), description);
+  checkCapabilities(description);
+  return description;
 }
 
 }  // namespace chromeball

@@ -11,7 +11,7 @@ namespace chromeball {
 // Given settings override the scene file's, which override the defaults. Reads the plate of a
 // composite. Throws InputError for settings that contradict each other, and for an unreadable
 // plate.
-RenderDescription planJob(SceneFile scene, const Settings& over = {});
+RenderDescription planRender(SceneFile scene, const Settings& over = {});
 
 // The composite of a description, from its settings.
 

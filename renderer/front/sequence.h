@@ -13,7 +13,7 @@ namespace chromeball {
 struct SequenceFrame {
   int number;
   SceneFile scene;  // with the frame's number in the names of output files
-  Settings given;   // over the scene's, as for planJob()
+  Settings given;   // over the scene's, as for planRender()
 };
 
 // The frames that `--frames` names, or the one of them that `--frame` names. Frame k is at k / fps

@@ -46,7 +46,7 @@ struct Range {
 
 // The effect of a setting.
 enum class Effect {
-  Image,    // changes the radiance of pixels: part of a job's description
+  Image,    // changes the radiance of pixels: part of the description
   Limit,    // changes the number of samples
   Display,  // changes the tone mapping of a .png
   Run,      // does not change the image

@@ -15,8 +15,8 @@ namespace chromeball {
 // The table of all settings of a render. The scene file's reader, the command line, --help and the
 // reference page (docs/scene-file.md) are derived from it.
 
-// To add a setting, add a row (setting_rows_*.cpp) and a member of RenderDescription that planJob()
-// sets. A Compound also needs a reader (scene_file*.cpp).
+// To add a setting, add a row (setting_rows_*.cpp) and a member of RenderDescription that
+// planRender() sets. A Compound also needs a reader (scene_file*.cpp).
 const std::vector<Setting>& settingTable();
 
 // A section of the scene file, in the order of the reference page; the section with the empty name

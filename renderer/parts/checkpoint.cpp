@@ -7,8 +7,8 @@
 #include "image/io/exr_rows.h"
 #include "image/io/exr_state.h"
 #include "session/develop_image.h"
-#include "session/job_description.h"
-#include "session/job_report.h"
+#include "session/image_header.h"
+#include "session/render_report.h"
 
 namespace chromeball {
 namespace {
@@ -51,8 +51,9 @@ RenderPart readPartHeader(const std::filesystem::path& path) {
   return part;
 }
 
-JobControl::JobControl(const LoadedScene& loaded, std::function<void(const RenderState&)> onPass,
-                       std::vector<Viewer*> viewers)
+CheckpointControl::CheckpointControl(const LoadedScene& loaded,
+                                     std::function<void(const RenderState&)> onPass,
+                                     std::vector<Viewer*> viewers)
     : loaded_(loaded),
       onPass_(std::move(onPass)),
       path_(loaded.description.run.checkpoint),
@@ -73,7 +74,7 @@ JobControl::JobControl(const LoadedScene& loaded, std::function<void(const Rende
                differenceOf(stored, part_.identity));
 }
 
-bool JobControl::restore(RenderState& state) {
+bool CheckpointControl::restore(RenderState& state) {
   if (!path_ || !std::filesystem::exists(*path_)) return false;
   readExrState(*path_, [&](Archive& a) {
     RenderPart part;  // has been compared
@@ -85,7 +86,7 @@ bool JobControl::restore(RenderState& state) {
   return true;
 }
 
-void JobControl::noteSamples(const RenderState& restored) {
+void CheckpointControl::noteSamples(const RenderState& restored) {
   const uint32_t pass = restored.finished.empty() ? 0 : restored.wanted;  // in progress
   const uint32_t samples = std::max(restored.done, pass),
                  asked = loaded_.description.settings.samples;
@@ -96,43 +97,43 @@ void JobControl::noteSamples(const RenderState& restored) {
                                      *path_, samples, asked)});
 }
 
-void JobControl::endPass(const RenderState& state) {
+void CheckpointControl::endPass(const RenderState& state) {
   if (onPass_) onPass_(state);
   publish(state);
 }
 
-bool JobControl::wantsPause(const RenderState& state) const {
+bool CheckpointControl::wantsPause(const RenderState& state) const {
   return filesAreDue(state) || viewIsDue() || checkpointIsDue(state);
 }
 
-void JobControl::pause(RenderState& state) {
+void CheckpointControl::pause(RenderState& state) {
   publish(state);
   if (checkpointIsDue(state)) writeCheckpoint(state);
 }
 
-void JobControl::end(RenderState& state) {
+void CheckpointControl::end(RenderState& state) {
   if (path_) writeCheckpoint(state);
 }
 
-bool JobControl::filesAreDue(const RenderState& state) const {
+bool CheckpointControl::filesAreDue(const RenderState& state) const {
   if (state.result.samples == 0) return false;  // some pixels may have none
   return images_.isDue() || std::ranges::any_of(viewers_, &Viewer::wantsFiles);
 }
 
-bool JobControl::viewIsDue() const {
+bool CheckpointControl::viewIsDue() const {
   return views_.isDue() && std::ranges::any_of(viewers_, &Viewer::wantsImage);
 }
 
-bool JobControl::checkpointIsDue(const RenderState& state) const {
+bool CheckpointControl::checkpointIsDue(const RenderState& state) const {
   return checkpoints_.isDue() && state.canBeStored();
 }
 
-void JobControl::publish(const RenderState& state) {
+void CheckpointControl::publish(const RenderState& state) {
   if (filesAreDue(state)) writeFiles(state);
   if (viewIsDue()) show(state);
 }
 
-void JobControl::writeFiles(const RenderState& state) {
+void CheckpointControl::writeFiles(const RenderState& state) {
   const OutputImage image = imageOf(state).image;
   try {
     writeOutputs(loaded_.description, image);
@@ -145,7 +146,7 @@ void JobControl::writeFiles(const RenderState& state) {
   for (Viewer* viewer : viewers_) viewer->wroteFiles();
 }
 
-void JobControl::show(const RenderState& state) {
+void CheckpointControl::show(const RenderState& state) {
   constexpr double kMostOfTime = 0.1, kLeastInterval = 0.2;  // seconds
   const Stopwatch watch;
   const auto shown = std::make_shared<const ImageSoFar>(imageSoFar(imageOf(state), state.result));
@@ -154,7 +155,7 @@ void JobControl::show(const RenderState& state) {
   views_.restart(std::max(kLeastInterval, watch.seconds() / kMostOfTime));
 }
 
-FinishedImage JobControl::imageOf(const RenderState& state) const {
+FinishedImage CheckpointControl::imageOf(const RenderState& state) const {
   FinishPlan plan = finishPlan(loaded_, state.result);
   plan.settings.denoise = false;
   const std::atomic<bool> never = false;
@@ -164,7 +165,7 @@ FinishedImage JobControl::imageOf(const RenderState& state) const {
   return finished;
 }
 
-void JobControl::writeCheckpoint(RenderState& state) {
+void CheckpointControl::writeCheckpoint(RenderState& state) {
   OutputImage image = imageOf(state).image;
   part_.plan = finishPlan(loaded_, state.result);
   image.state = [&](Archive& a) {

@@ -15,7 +15,7 @@
 #include "base/progress.h"
 #include "render/render_state.h"
 #include "session/finish.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "session/viewer.h"
 
 namespace chromeball {
@@ -51,15 +51,15 @@ class Interval {
   Stopwatch watch_;
 };
 
-// Writes the job's images every `write-every` seconds, without denoising, and its checkpoint every
-// `checkpoint-every` seconds and at the end; shows the image to those who watch.
-class JobControl : public RenderControl {
+// Writes the render's images every `write-every` seconds, without denoising, and its checkpoint
+// every `checkpoint-every` seconds and at the end; shows the image to those who watch.
+class CheckpointControl : public RenderControl {
  public:
   // Holds the lock of the checkpoint from here on. Throws InputError if another process holds it,
-  // or if there is a checkpoint of another job, or one that the job is not to resume.
+  // or if there is a checkpoint of another render, or one that is not to be resumed.
   // `onPass` is called after each pass. The viewers must outlive this.
-  JobControl(const LoadedScene& loaded, std::function<void(const RenderState&)> onPass = {},
-             std::vector<Viewer*> viewers = {});
+  CheckpointControl(const LoadedScene& loaded, std::function<void(const RenderState&)> onPass = {},
+                    std::vector<Viewer*> viewers = {});
 
   // Throws InputError for a damaged checkpoint.
   bool restore(RenderState& state) override;

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/io/exr_state.h"
-#include "session/job_description.h"
+#include "session/image_header.h"
 #include "session/memory_estimate.h"
 
 namespace chromeball {

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/hash.h"
-#include "session/job_description.h"
+#include "session/image_header.h"
 
 namespace chromeball {
 namespace {

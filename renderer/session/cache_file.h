@@ -12,14 +12,14 @@ namespace chromeball {
 
 class CacheFile {
  public:
-  // The cache of a job with RenderSettings::cacheError. Reads the job's file if it exists. Throws
+  // The cache of a description with RenderSettings::cacheError. Reads its file if it exists. Throws
   // InputError if the file is damaged or belongs to another scene or light, and wherever
   // checkReplaceable() does.
   explicit CacheFile(const LoadedScene& loaded);
 
   IrradianceCache& cache() { return cache_; }
 
-  // Replaces the file, if the job has one and there are new records. Throws RunError.
+  // Replaces the file, if the description has one and there are new records. Throws RunError.
   void write();
 
  private:

@@ -25,7 +25,7 @@ std::vector<HalvedImage> directAndIndirect(const HalvedImage& color, const Halve
 std::optional<Denoised> denoiseRender(const RenderResult& result, const Progress& progress,
                                       const std::atomic<bool>& stop);
 
-// The share of rendering in the progress of a job that denoises.
+// The share of rendering in the progress of a render that denoises.
 inline constexpr double kRenderShare = 0.9;
 
 // Replaces the color of `image` by the denoised one (alpha only if it is denoised too), and adds

@@ -32,12 +32,13 @@ DevelopSettings possible(DevelopSettings settings, const ViewFrame& frame, const
   return settings;
 }
 
-OutputImage developed(const RenderDescription& job, const OutputImage& image, Messages& messages) {
+OutputImage developed(const RenderDescription& description, const OutputImage& image,
+                      Messages& messages) {
   const Layer& color = image.layers.front();
   OutputImage result{{color}, image.metadata};
   const Image* depth = findDepth(image);
   const ViewFrame frame = viewFrame(color.image, image.placement, image.metadata);
-  const DevelopSettings settings = possible(job.output.develop, frame, depth, messages);
+  const DevelopSettings settings = possible(description.output.develop, frame, depth, messages);
   for (Message& message : inWords(develop(result.layers.front().image, settings, depth, frame)))
     messages.push_back(std::move(message));
   return result;
@@ -68,13 +69,13 @@ Messages inWords(const DevelopReport& report) {
   return messages;
 }
 
-Messages writeOutputs(const RenderDescription& job, const OutputImage& image) {
+Messages writeOutputs(const RenderDescription& description, const OutputImage& image) {
   Messages messages;
   std::optional<OutputImage> shown;
-  for (const std::string& path : job.output.files) {
-    const bool isShown = lowerExtension(path) == ".png" && !job.output.develop.isEmpty();
-    if (isShown && !shown) shown = developed(job, image, messages);
-    const Messages lost = writeImage(path, isShown ? *shown : image, job.output.display);
+  for (const std::string& path : description.output.files) {
+    const bool isShown = lowerExtension(path) == ".png" && !description.output.develop.isEmpty();
+    if (isShown && !shown) shown = developed(description, image, messages);
+    const Messages lost = writeImage(path, isShown ? *shown : image, description.output.display);
     messages.insert(messages.end(), lost.begin(), lost.end());
   }
   return messages;

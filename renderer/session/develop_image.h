@@ -17,9 +17,9 @@ ViewFrame viewFrame(const Image& image, const std::optional<Placement>& placemen
 // Warnings of invalid pixels and of discs that were made smaller.
 Messages inWords(const DevelopReport& report);
 
-// Writes the outputs of a job: .png developed as job.output.develop says, others as rendered.
-// Returns warnings; steps that the image lacks data for (a field of view, depth) are skipped with a
-// warning. Throws as writeImage() does.
-Messages writeOutputs(const RenderDescription& job, const OutputImage& image);
+// Writes the outputs of a description: .png developed as description.output.develop says, others as
+// rendered. Returns warnings; steps that the image lacks data for (a field of view, depth) are
+// skipped with a warning. Throws as writeImage() does.
+Messages writeOutputs(const RenderDescription& description, const OutputImage& image);
 
 }  // namespace chromeball

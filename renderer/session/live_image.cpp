@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 
 namespace chromeball {
 namespace {

@@ -40,7 +40,7 @@ bool receivesNoShadow(const LoadedScene& loaded) {
 }
 
 SceneContents contentsOf(const LoadedScene& loaded) {
-  const RenderDescription& job = loaded.description;
+  const RenderDescription& description = loaded.description;
   const Scene& scene = loaded.scene;
   const auto hasMaterial = [&](const auto& isSuch) {
     return std::ranges::any_of(scene.instances, [&](const Instance& i) {
@@ -48,49 +48,51 @@ SceneContents contentsOf(const LoadedScene& loaded) {
     });
   };
   return {
-      .hasProbe = job.probe.file || job.probe.map || scene.environment,
+      .hasProbe = description.probe.file || description.probe.map || scene.environment,
       .hasModelLights = loaded.hasModelLights,
-      .hasSuns = loaded.loadedProbe.hasSuns || (job.scene && !job.scene->suns.empty()) ||
-                 std::ranges::any_of(job.lamps, [](const Lamp& l) { return l.sun.has_value(); }),
+      .hasSuns =
+          loaded.loadedProbe.hasSuns || (description.scene && !description.scene->suns.empty()) ||
+          std::ranges::any_of(description.lamps, [](const Lamp& l) { return l.sun.has_value(); }),
       .hasBodies = hasBodies(scene),
       .hasStraightGlass = hasMaterial([](const Material& m) { return m.straightShadows; }),
       .hidesBacks = hasMaterial([](const Material& m) { return !m.doubleSided; }),
-      .moves = loaded.moves || (job.camera.shutter && job.camera.shutter->turn != 0)};
+      .moves =
+          loaded.moves || (description.camera.shutter && description.camera.shutter->turn != 0)};
 }
 
 void addMemory(const LoadedScene& loaded, Collector& messages) {
-  const RenderDescription& job = loaded.description;
+  const RenderDescription& description = loaded.description;
   constexpr double kMinBytes = 1e9;
   if (const MemoryEstimate estimate = estimateMemory(loaded); estimate.peak > kMinBytes)
-    messages.note(fmt::format("{}: takes {:.2g} GB of memory: {}", job.path, 1e-9 * estimate.peak,
-                              inWords(estimate)));
+    messages.note(fmt::format("{}: takes {:.2g} GB of memory: {}", description.path,
+                              1e-9 * estimate.peak, inWords(estimate)));
 }
 
 // Lamps of the scene file that are among the scene's lights.
-size_t ofSceneFile(const RenderDescription& job, const Scene& scene) {
+size_t ofSceneFile(const RenderDescription& description, const Scene& scene) {
   if (scene.lights.empty()) return 0;  // left out (--light-from)
-  return size_t(
-      std::ranges::count_if(job.lamps, [](const Lamp& lamp) { return lamp.punctual.has_value(); }));
+  return size_t(std::ranges::count_if(description.lamps,
+                                      [](const Lamp& lamp) { return lamp.punctual.has_value(); }));
 }
 
-void addLights(const RenderDescription& job, const Scene& scene, Collector& messages) {
-  const std::string model = job.sceneName();
+void addLights(const RenderDescription& description, const Scene& scene, Collector& messages) {
+  const std::string model = description.sceneName();
   if (scene.environment)
     messages.note(fmt::format("{}: no probe; lit by the model's own environment", model));
-  else if (const size_t count = scene.lights.size() - ofSceneFile(job, scene))
+  else if (const size_t count = scene.lights.size() - ofSceneFile(description, scene))
     messages.note(fmt::format("{}: no probe; lit by the model's {} light{}", model, count,
                               count == 1 ? "" : "s"));
 }
 
 // `guide = "on"` where nothing can be guided.
-void addGuide(const RenderDescription& job, Collector& messages) {
-  if (job.settings.guiding != Guiding::On) return;
-  const std::string location = job.origins.of("render.guide");
-  if (job.settings.path().limitsKinds())
+void addGuide(const RenderDescription& description, Collector& messages) {
+  if (description.settings.guiding != Guiding::On) return;
+  const std::string location = description.origins.of("render.guide");
+  if (description.settings.path().limitsKinds())
     messages.note(fmt::format(
         "{}: nothing is guided, since limits of depth by kind do not know guided bounces",
         location));
-  else if (GuideTraining::samplesOf(job.settings) == 0)
+  else if (GuideTraining::samplesOf(description.settings) == 0)
     messages.note(fmt::format("{}: nothing is guided with fewer than {} samples per pixel",
                               location, GuideTraining::kMinSamples));
 }
@@ -142,11 +144,11 @@ std::string plateScaleText(const CompositeEntry& composite, const PlateScale& fo
 }  // namespace
 
 Messages loadMessages(const LoadedScene& loaded) {
-  const RenderDescription& job = loaded.description;
+  const RenderDescription& description = loaded.description;
   const Scene& scene = loaded.scene;
   Collector messages;
-  for (const std::string& line : job.warnings) messages.warn(line);
-  if (job.composite) messages.add(job.composite->messages);
+  for (const std::string& line : description.warnings) messages.warn(line);
+  if (description.composite) messages.add(description.composite->messages);
   for (const std::string& line : loaded.modelWarnings) messages.warn(line);
   for (const std::string& line : scene.notes) messages.note(line);
   if (!scene.lights.empty() && hasBodies(scene))
@@ -157,17 +159,18 @@ Messages loadMessages(const LoadedScene& loaded) {
     messages.warn(
         "the local scene is unlit (KHR_materials_unlit): it shows neither shadows nor light of the "
         "objects; give it a material that is lit");
-  for (const std::string& line : idleSettings(job, contentsOf(loaded))) messages.warn(line);
+  for (const std::string& line : idleSettings(description, contentsOf(loaded))) messages.warn(line);
   addMemory(loaded, messages);
-  if (const auto& probe = job.probe.file)
+  if (const auto& probe = description.probe.file)
     addProbe(*probe, loaded.loadedProbe, messages);
-  else if (!job.probe.map)
-    addLights(job, scene, messages);
-  addGuide(job, messages);
+  else if (!description.probe.map)
+    addLights(description, scene, messages);
+  addGuide(description, messages);
   addSources(loaded, messages);
   if (const auto& scale = loaded.plateScale)
-    messages.note(plateScaleText(job.composite->entry, *scale));
-  if (job.composite && job.composite->plateFile) addPlate(*job.composite->plateFile, messages);
+    messages.note(plateScaleText(description.composite->entry, *scale));
+  if (description.composite && description.composite->plateFile)
+    addPlate(*description.composite->plateFile, messages);
   return messages.take();
 }
 

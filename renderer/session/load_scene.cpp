@@ -18,11 +18,11 @@ namespace chromeball {
 namespace {
 
 // Null unless the surroundings are a model.
-std::unique_ptr<const Room> loadRoom(const RenderDescription& job, const glm::dvec3& origin,
+std::unique_ptr<const Room> loadRoom(const RenderDescription& description, const glm::dvec3& origin,
                                      ModelCache& cache, std::vector<std::string>& files) {
-  const auto& surroundings = job.surroundings;
+  const auto& surroundings = description.surroundings;
   if (!surroundings || surroundings->shape.shape != Surroundings::Shape::Model) return nullptr;
-  GltfChoice choice = job.models.empty() ? GltfChoice() : job.models.front().choice;
+  GltfChoice choice = description.models.empty() ? GltfChoice() : description.models.front().choice;
   choice.animation.reset();
   choice.variant.reset();
   choice.environment = false;
@@ -35,9 +35,10 @@ std::unique_ptr<const Room> loadRoom(const RenderDescription& job, const glm::dv
                                       surroundings->shape.model);
 }
 
-std::optional<Surroundings> surroundingsOf(const RenderDescription& job, const glm::dvec3& origin) {
-  if (!job.surroundings) return {};
-  return job.surroundings->relativeTo(origin);
+std::optional<Surroundings> surroundingsOf(const RenderDescription& description,
+                                           const glm::dvec3& origin) {
+  if (!description.surroundings) return {};
+  return description.surroundings->relativeTo(origin);
 }
 
 // Gives `scene` the meshes of an earlier one where they are equal and do not move: lamps.
@@ -87,16 +88,16 @@ void replaceFile(const std::optional<std::string>& earlier, const std::optional<
 }
 
 // The probe, if it has turned or is another one. An exception leaves everything unchanged.
-void replaceProbe(const RenderDescription& job, LoadedScene& loaded, FrameChange& change) {
+void replaceProbe(const RenderDescription& description, LoadedScene& loaded, FrameChange& change) {
   const ProbeDescription earlier = loaded.description.probe;
-  const ProbeDescription& probe = job.probe;
+  const ProbeDescription& probe = description.probe;
   const bool isOther = probe.file != earlier.file || probe.map != earlier.map ||
                        probe.mapping != earlier.mapping || probe.scale != earlier.scale;
   if (!isOther && loaded.probe.rotation() == probe.rotation) return;
   if (isOther) {
-    LoadedProbe read = loadProbeOf(job, loaded.scene);
-    Probe replaced = probeOf(job, read);
-    loaded.sources = sourcesOf(job, read, replaced);
+    LoadedProbe read = loadProbeOf(description, loaded.scene);
+    Probe replaced = probeOf(description, read);
+    loaded.sources = sourcesOf(description, read, replaced);
     replaceFile(earlier.file, probe.file, loaded.files);
     loaded.loadedProbe = std::move(read);
     loaded.probe = std::move(replaced);
@@ -108,62 +109,64 @@ void replaceProbe(const RenderDescription& job, LoadedScene& loaded, FrameChange
   change.lighting = true;
 }
 
-void replaceModels(RenderDescription& job, LoadedScene& loaded, ModelCache& cache,
+void replaceModels(RenderDescription& description, LoadedScene& loaded, ModelCache& cache,
                    FrameChange& change) {
-  PlacedModels models = placeModels(job, cache, &loaded.view);
-  if (job.surroundings && !loaded.room)
-    checkInside(models.scene, *surroundingsOf(job, models.origin), job.sceneName());
+  PlacedModels models = placeModels(description, cache, &loaded.view);
+  if (description.surroundings && !loaded.room)
+    checkInside(models.scene, *surroundingsOf(description, models.origin), description.sceneName());
   loaded.view = models.view;
   loaded.camera = models.camera;
   loaded.hasModelLights = models.hasLights;
   loaded.moves = models.moves;
   loaded.modelWarnings = std::move(models.warnings);
-  if (!job.probe.file && !models.scene.environment) checkLit(job, models.scene);
+  if (!description.probe.file && !models.scene.environment) checkLit(description, models.scene);
   shareMeshes(loaded.scene, models.scene);
   change.geometry = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
   if (change.geometry) loaded.scene = std::move(models.scene);
   if (models.origin != loaded.origin) {
     change.lighting = true;
     loaded.origin = models.origin;
-    loaded.surroundings = surroundingsOf(job, loaded.origin);
+    loaded.surroundings = surroundingsOf(description, loaded.origin);
     std::vector<std::string> known;
-    loaded.room = loadRoom(job, loaded.origin, cache, known);
+    loaded.room = loadRoom(description, loaded.origin, cache, known);
   }
 }
 
 }  // namespace
 
-LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
+LoadedScene loadScene(const RenderDescription& given, ModelCache* shared,
                       const AutomaticView* view) {
-  checkCapabilities(description);
-  RenderDescription job = description;
+  checkCapabilities(given);
+  RenderDescription description = given;
   ModelCache own;
   ModelCache& cache = shared ? *shared : own;
-  if (job.run.textureMemory) cache.texels.memory = *job.run.textureMemory;
-  cache.texels.limit = memoryLimit(job);
-  PlacedModels models = placeModels(job, cache, view);
+  if (description.run.textureMemory) cache.texels.memory = *description.run.textureMemory;
+  cache.texels.limit = memoryLimit(description);
+  PlacedModels models = placeModels(description, cache, view);
   Scene& scene = models.scene;
   std::vector<std::string> files = scene.files;
-  const auto& lists = job.lightLists;
+  const auto& lists = description.lightLists;
   files.insert(files.end(), lists.begin(), lists.end());
-  if (job.probe.file) files.push_back(*job.probe.file);
-  if (job.camera.file) files.push_back(*job.camera.file);
-  if (job.composite && job.composite->plateFile) files.push_back(*job.composite->plateFile);
-  std::unique_ptr<const Room> room = loadRoom(job, models.origin, cache, files);
-  if (job.surroundings && !room)
-    checkInside(scene, *surroundingsOf(job, models.origin), job.sceneName());
-  if (job.surroundings && !job.probe.file && !job.probe.map && !scene.environment)
-    throwInput("{}: [surroundings] needs a probe", job.origins.of("surroundings"));
-  LoadedProbe loaded = loadProbeOf(job, scene);
-  Probe probe = probeOf(job, loaded);
-  std::optional<ProbeSources> sources = sourcesOf(job, loaded, probe);
+  if (description.probe.file) files.push_back(*description.probe.file);
+  if (description.camera.file) files.push_back(*description.camera.file);
+  if (description.composite && description.composite->plateFile)
+    files.push_back(*description.composite->plateFile);
+  std::unique_ptr<const Room> room = loadRoom(description, models.origin, cache, files);
+  if (description.surroundings && !room)
+    checkInside(scene, *surroundingsOf(description, models.origin), description.sceneName());
+  if (description.surroundings && !description.probe.file && !description.probe.map &&
+      !scene.environment)
+    throwInput("{}: [surroundings] needs a probe", description.origins.of("surroundings"));
+  LoadedProbe loaded = loadProbeOf(description, scene);
+  Probe probe = probeOf(description, loaded);
+  std::optional<ProbeSources> sources = sourcesOf(description, loaded, probe);
   LoadedScene result{{},
                      std::move(scene),
                      models.camera,
                      models.view,
                      std::move(loaded),
                      std::move(probe),
-                     surroundingsOf(job, models.origin),
+                     surroundingsOf(description, models.origin),
                      std::move(room),
                      models.hasLights,
                      models.moves,
@@ -171,7 +174,7 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
                      std::move(sources),
                      std::move(files)};
   result.modelWarnings = std::move(models.warnings);
-  result.description = std::move(job);
+  result.description = std::move(description);
   if (result.description.composite) {
     reportWork("local scene", 0);
     prepareLocalScene(result);
@@ -183,20 +186,19 @@ LoadedScene loadScene(const RenderDescription& description, ModelCache* shared,
   return result;
 }
 
-FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded,
-                      ModelCache& cache) {
-  assert(!description.composite);
-  RenderDescription job = description;
+FrameChange loadFrame(const RenderDescription& given, LoadedScene& loaded, ModelCache& cache) {
+  assert(!given.composite);
+  RenderDescription description = given;
   FrameChange change;
   if (loaded.scene.isAnimated) {
-    replaceProbe(job, loaded, change);
-    replaceModels(job, loaded, cache, change);
+    replaceProbe(description, loaded, change);
+    replaceModels(description, loaded, cache, change);
   } else {
-    const Camera camera = placeCamera(job, loaded.scene, loaded.view, loaded.origin);
-    replaceProbe(job, loaded, change);
+    const Camera camera = placeCamera(description, loaded.scene, loaded.view, loaded.origin);
+    replaceProbe(description, loaded, change);
     loaded.camera = camera;
   }
-  loaded.description = std::move(job);
+  loaded.description = std::move(description);
   checkMemory(loaded);
   loaded.messages = loadMessages(loaded);
   return change;

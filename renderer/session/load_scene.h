@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contents of a job's files, ready to be rendered.
+// The contents of a description's files, ready to be rendered.
 #pragma once
 
 #include "base/message.h"
@@ -31,8 +31,8 @@ struct LoadedScene {
   glm::dvec3 origin;                         // of the scene's coordinates in the world, metres
   std::optional<ProbeSources> sources;       // polygons of the probe
   std::vector<std::string> files;            // all that were read; no output may replace one
-  Messages messages;                       // of the job's settings, of the models and of the probe
-  std::vector<std::string> modelWarnings;  // of their files and their motion
+  Messages messages;                         // of the settings, of the models and of the probe
+  std::vector<std::string> modelWarnings;    // of their files and their motion
 
   // These are for composites; otherwise empty.
   ObjectMask isObject;                     // the rest of the scene is the local scene
@@ -53,13 +53,13 @@ struct FrameChange {
 };
 
 // Replaces the camera, the probe if it has turned or is another file, and whatever an animated
-// model moves, for another frame of the same job. Not for composites; a probe that turns must have
-// a file.
+// model moves, for another frame of the same description. Not for composites; a probe that turns
+// must have a file.
 FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded, ModelCache& cache);
 
-// Messages to the user about the files of a job.
+// Messages to the user about the files of a description.
 
-// Messages about the job's settings, the models, the probe and the plate.
+// Messages about the settings, the models, the probe and the plate.
 Messages loadMessages(const LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -41,17 +41,20 @@ double bytesOfFiles(const Scene& scene) {
 
 }  // namespace
 
-double imageBytes(const RenderDescription& job) {
-  const RenderSettings& s = job.settings;
-  const double composite = job.composite ? double(compositeBytesPerPixel(s.denoise)) : 0;
-  const double snapshots = job.run.isWatched ? snapshotBytes(s, job.composite.has_value()) : 0;
+double imageBytes(const RenderDescription& description) {
+  const RenderSettings& s = description.settings;
+  const double composite = description.composite ? double(compositeBytesPerPixel(s.denoise)) : 0;
+  const double snapshots =
+      description.run.isWatched ? snapshotBytes(s, description.composite.has_value()) : 0;
   return imageBytes(s) + snapshots + composite * s.width * s.height;
 }
 
-double memoryLimit(const RenderDescription& job) { return job.run.memory.value_or(memoryBudget()); }
+double memoryLimit(const RenderDescription& description) {
+  return description.run.memory.value_or(memoryBudget());
+}
 
 MemoryEstimate estimateMemory(const LoadedScene& loaded) {
-  const RenderDescription& job = loaded.description;
+  const RenderDescription& description = loaded.description;
   const Scene& scene = loaded.scene;
   const double texels = double(scene.texelByteCount());
   const double meshes = double(scene.byteCount()) - texels;
@@ -62,11 +65,11 @@ MemoryEstimate estimateMemory(const LoadedScene& loaded) {
 
   MemoryEstimate e;
   e.process = kProcessBytes;
-  e.images = imageBytes(job);
+  e.images = imageBytes(description);
   e.textures = texels;
   if (const auto& file = scene.texelFile)
     e.textures += double(std::min(file->byteCount(), file->cacheBytes()));
-  const bool keepsFiles = job.run.isOfFrames && scene.isAnimated;
+  const bool keepsFiles = description.run.isOfFrames && scene.isAnimated;
   e.geometry = meshes + kBuiltTriangle * triangles + (keepsFiles ? bytesOfFiles(scene) : 0);
   e.probe = map + kTableTexel * mapTexels;
 
@@ -85,13 +88,14 @@ std::string inWords(const MemoryEstimate& e) {
 }
 
 void checkMemory(const LoadedScene& loaded) {
-  const RenderDescription& job = loaded.description;
+  const RenderDescription& description = loaded.description;
   const MemoryEstimate estimate = estimateMemory(loaded);
-  const double limit = memoryLimit(job);
+  const double limit = memoryLimit(description);
   if (estimate.peak > limit)
-    throw InputError(fmt::format("{}: takes {:.3g} GB of memory ({}); the limit is {:.3g} GB",
-                                 job.path, 1e-9 * estimate.peak, inWords(estimate), 1e-9 * limit),
-                     Remedy{"memory", {}});
+    throw InputError(
+        fmt::format("{}: takes {:.3g} GB of memory ({}); the limit is {:.3g} GB", description.path,
+                    1e-9 * estimate.peak, inWords(estimate), 1e-9 * limit),
+        Remedy{"memory", {}});
 }
 
 namespace {

@@ -21,11 +21,11 @@ struct MemoryEstimate {
 
 MemoryEstimate estimateMemory(const LoadedScene& loaded);
 
-// The job's limit: `--memory`, or memoryBudget().
-double memoryLimit(const RenderDescription& job);
+// The description's limit: `--memory`, or memoryBudget().
+double memoryLimit(const RenderDescription& description);
 
-// The film, layers, output images and snapshots of a job of known size.
-double imageBytes(const RenderDescription& job);
+// The film, layers, output images and snapshots of a description of known size.
+double imageBytes(const RenderDescription& description);
 
 // "images 1.2 GB, textures 0.1 GB, ..."
 std::string inWords(const MemoryEstimate& estimate);

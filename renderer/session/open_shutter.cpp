@@ -16,14 +16,14 @@ namespace {
 constexpr double kMovingVertex = 80;  // bytes of a key: attributes, and Embree's copy
 
 // The models at a fraction of the shutter's time.
-Scene modelsAt(const RenderDescription& job, double fraction, const glm::dvec3& origin,
+Scene modelsAt(const RenderDescription& description, double fraction, const glm::dvec3& origin,
                ModelCache& cache) {
-  std::vector<ModelEntry> later = job.models;
+  std::vector<ModelEntry> later = description.models;
   for (ModelEntry& model : later)
     if (model.choice.animation)
-      model.choice.animation->seconds += fraction * job.camera.shutter->seconds();
+      model.choice.animation->seconds += fraction * description.camera.shutter->seconds();
   std::vector<std::string> known;
-  return loadModels(job, later, origin, cache, known);
+  return loadModels(description, later, origin, cache, known);
 }
 
 bool isSameView(const Camera& a, const Camera& b) {
@@ -37,27 +37,27 @@ void setMotion(std::vector<Camera> keys, Camera& camera) {
 }
 
 // The models have one key in memory; they will have one for each step.
-void checkMotionMemory(const RenderDescription& job, const Scene& scene) {
+void checkMotionMemory(const RenderDescription& description, const Scene& scene) {
   double moving = 0;
   for (const Instance& instance : scene.instances)
     if (instance.moves)
       moving += double(scene.meshes[size_t(instance.mesh)].positions.size()) * kMovingVertex;
-  const double needed = moving * job.camera.shutter->steps;
-  if (needed > memoryLimit(job))
+  const double needed = moving * description.camera.shutter->steps;
+  if (needed > memoryLimit(description))
     throw InputError(
         fmt::format("{}: {} steps of what moves take {:.3g} GB of memory; the limit is {:.3g} GB",
-                    job.origins.of("camera.shutter"), job.camera.shutter->steps, 1e-9 * needed,
-                    1e-9 * memoryLimit(job)),
+                    description.origins.of("camera.shutter"), description.camera.shutter->steps,
+                    1e-9 * needed, 1e-9 * memoryLimit(description)),
         Remedy{"memory", {}});
 }
 
 // Fractions of the shutter's time at which animations have moved, between which and the keys they
 // may come back; of many, some.
-std::vector<double> fractionsOfChange(const RenderDescription& job, ModelCache& cache) {
+std::vector<double> fractionsOfChange(const RenderDescription& description, ModelCache& cache) {
   constexpr size_t kMost = 64;
-  const double seconds = job.camera.shutter->seconds();
+  const double seconds = description.camera.shutter->seconds();
   std::set<double> all;
-  for (const ModelEntry& model : job.models) {
+  for (const ModelEntry& model : description.models) {
     GltfChoice choice = model.choice;
     choice.cache = &cache;
     for (const double change : animationChanges(model.file, choice, seconds))
@@ -70,7 +70,7 @@ std::vector<double> fractionsOfChange(const RenderDescription& job, ModelCache& 
   return some;
 }
 
-std::string modelOf(const RenderDescription& job) { return job.sceneName(); }
+std::string modelOf(const RenderDescription& description) { return description.sceneName(); }
 
 // `halfSteps`: the camera at the keys and half-way between them, from the opening to the closing.
 void moveCamera(const Shutter& shutter, const std::vector<Camera>& halfSteps, Camera& camera,
@@ -85,20 +85,20 @@ void moveCamera(const Shutter& shutter, const std::vector<Camera>& halfSteps, Ca
 
 }  // namespace
 
-void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache& cache) {
+void openShutter(const RenderDescription& description, PlacedModels& placed, ModelCache& cache) {
   const auto warn = [&](std::vector<std::string> lines) {
     placed.warnings.insert(placed.warnings.end(), lines.begin(), lines.end());
   };
   if (!placed.scene.isAnimated)
-    return warn(turnCamera(job, placed.scene, placed.view, placed.origin, placed.camera));
-  checkMotionMemory(job, placed.scene);
-  const int steps = job.camera.shutter->steps;
+    return warn(turnCamera(description, placed.scene, placed.view, placed.origin, placed.camera));
+  checkMotionMemory(description, placed.scene);
+  const int steps = description.camera.shutter->steps;
   std::vector<Camera> cameras(2 * size_t(steps) + 1, placed.camera);  // at half steps
   const auto modelsAtHalfStep = [&](int i) {
     const double fraction = double(i) / (2 * steps);
-    Scene scene = modelsAt(job, fraction, placed.origin, cache);
-    cameras[size_t(i)] =
-        cameraOf(job, scene, placed.view, placed.origin, fraction * job.camera.shutter->turn);
+    Scene scene = modelsAt(description, fraction, placed.origin, cache);
+    cameras[size_t(i)] = cameraOf(description, scene, placed.view, placed.origin,
+                                  fraction * description.camera.shutter->turn);
     return scene;
   };
   std::vector<Scene> later;
@@ -107,31 +107,32 @@ void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache&
     placed.warnings.push_back(fmt::format(
         "{}: node `{}` appears, vanishes or is mirrored while the shutter is open; it is "
         "rendered as it was before",
-        modelOf(job), node));
+        modelOf(description), node));
   // Checked also where no key differs: an object that turns by whole turns between keys seems to
   // stand still.
   MotionError error;
   for (int k = 0; k < steps; ++k)
     error.add(placed.scene, modelsAtHalfStep(2 * k + 1), float((k + 0.5) / steps));
-  const std::vector<double> changes = fractionsOfChange(job, cache);
+  const std::vector<double> changes = fractionsOfChange(description, cache);
   for (const double fraction : changes)
-    error.add(placed.scene, modelsAt(job, fraction, placed.origin, cache), float(fraction));
+    error.add(placed.scene, modelsAt(description, fraction, placed.origin, cache), float(fraction));
   placed.moves = placed.scene.moves || !changes.empty();
-  moveCamera(*job.camera.shutter, cameras, placed.camera, error);
-  warn(error.warnings(modelOf(job), steps));
+  moveCamera(*description.camera.shutter, cameras, placed.camera, error);
+  warn(error.warnings(modelOf(description), steps));
 }
 
-std::vector<std::string> turnCamera(const RenderDescription& job, const Scene& scene,
+std::vector<std::string> turnCamera(const RenderDescription& description, const Scene& scene,
                                     const AutomaticView& view, const glm::dvec3& origin,
                                     Camera& camera) {
-  const Shutter& shutter = *job.camera.shutter;
+  const Shutter& shutter = *description.camera.shutter;
   if (shutter.turn == 0) return {};
   std::vector<Camera> cameras;
   for (int i = 0; i <= 2 * shutter.steps; ++i)
-    cameras.push_back(cameraOf(job, scene, view, origin, shutter.turn * i / (2 * shutter.steps)));
+    cameras.push_back(
+        cameraOf(description, scene, view, origin, shutter.turn * i / (2 * shutter.steps)));
   MotionError error;
   moveCamera(shutter, cameras, camera, error);
-  return error.warnings(modelOf(job), shutter.steps);
+  return error.warnings(modelOf(description), shutter.steps);
 }
 
 }  // namespace chromeball

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How models, lamps and camera move while a job's shutter is open: they are read at equally spaced
-// times, and move along straight lines between these (scene/motion.h).
+// How models, lamps and camera move while a description's shutter is open: they are read at equally
+// spaced times, and move along straight lines between these (scene/motion.h).
 #pragma once
 
 #include "session/place_models.h"
@@ -10,10 +10,10 @@ namespace chromeball {
 // Gives the models, their lamps and the camera their motion. Warns where straight lines are far
 // from it, and of parts and lamps that appear, vanish or become mirrored: those present when the
 // shutter opens stay as they were, and no others appear. Throws InputError.
-void openShutter(const RenderDescription& job, PlacedModels& placed, ModelCache& cache);
+void openShutter(const RenderDescription& description, PlacedModels& placed, ModelCache& cache);
 
 // The camera's turn around models that stand still. Returns warnings.
-std::vector<std::string> turnCamera(const RenderDescription& job, const Scene& scene,
+std::vector<std::string> turnCamera(const RenderDescription& description, const Scene& scene,
                                     const AutomaticView& view, const glm::dvec3& origin,
                                     Camera& camera);
 

@@ -20,14 +20,14 @@
 namespace chromeball {
 namespace {
 
-Camera chooseWithoutLens(const RenderDescription& job, const Scene& scene,
+Camera chooseWithoutLens(const RenderDescription& description, const Scene& scene,
                          const AutomaticView& view) {
-  if (const auto& placed = job.camera.placed) try {
+  if (const auto& placed = description.camera.placed) try {
       return placed->relativeTo(view.origin);
     } catch (const InputError& error) {
-      throwInput("{}: {}", job.origins.of("camera.placed"), error.what());
+      throwInput("{}: {}", description.origins.of("camera.placed"), error.what());
     }
-  if (const auto& wanted = job.camera.name) {
+  if (const auto& wanted = description.camera.name) {
     std::vector<std::string_view> names;
     for (const auto name : {&Camera::name, &Camera::node})
       for (const Camera& camera : scene.cameras) {
@@ -35,31 +35,31 @@ Camera chooseWithoutLens(const RenderDescription& job, const Scene& scene,
         if (std::count(names.begin(), names.end(), camera.*name) == 0)
           names.push_back(camera.*name);
       }
-    throwInput("{}: the model has no camera `{}`; {}", job.origins.of("camera.name"), *wanted,
-               names.empty() ? "it has none" : didYouMean(*wanted, names));
+    throwInput("{}: the model has no camera `{}`; {}", description.origins.of("camera.name"),
+               *wanted, names.empty() ? "it has none" : didYouMean(*wanted, names));
   }
   if (!scene.cameras.empty()) return scene.cameras.front();
   return *view.camera;
 }
 
-Camera withLens(const RenderDescription& job, Camera camera) {
-  const auto& lens = job.camera.lens;
+Camera withLens(const RenderDescription& description, Camera camera) {
+  const auto& lens = description.camera.lens;
   if (!lens) return camera;
   if (camera.orthographic)
     throwInput("{}: an orthographic camera has no lens; leave out `aperture` and `focus`",
-               job.origins.of("camera.lens"));
+               description.origins.of("camera.lens"));
   camera.lensRadius = 0.5f * lens->aperture;
   camera.focus = lens->focus;
   return camera;
 }
 
-Camera withOptics(const RenderDescription& job, Camera camera) {
-  const auto& optics = job.camera.optics;
+Camera withOptics(const RenderDescription& description, Camera camera) {
+  const auto& optics = description.camera.optics;
   if (!optics) return camera;
   if (camera.orthographic)
     throwInput(
         "{}: an orthographic camera has no lens; leave out `principal_point` and `distortion`",
-        job.origins.of("camera.optics"));
+        description.origins.of("camera.optics"));
   if (optics->principalPoint) camera.principalPoint = *optics->principalPoint;
   camera.distortion = optics->distortion;
   return camera;
@@ -76,12 +76,12 @@ AutomaticView AutomaticView::seenFrom(const glm::dvec3& other) const {
   return view;
 }
 
-AutomaticView automaticView(const RenderDescription& job, const Scene& scene,
+AutomaticView automaticView(const RenderDescription& description, const Scene& scene,
                             const glm::dvec3& origin) {
-  const RenderSettings& s = job.settings;
+  const RenderSettings& s = description.settings;
   const float aspect = float(s.width) / float(s.height);
-  const bool turns = job.camera.turns;
-  const bool isPlaced = job.camera.placed || job.camera.name;
+  const bool turns = description.camera.turns;
+  const bool isPlaced = description.camera.placed || description.camera.name;
   AutomaticView view{.origin = origin};
   if (turns) view.centre = centreOf(scene);
   if (!isPlaced && scene.cameras.empty())
@@ -89,8 +89,10 @@ AutomaticView automaticView(const RenderDescription& job, const Scene& scene,
   return view;
 }
 
-Camera chooseCamera(const RenderDescription& job, const Scene& scene, const AutomaticView& view) {
-  return withOptics(job, withLens(job, chooseWithoutLens(job, scene, view)));
+Camera chooseCamera(const RenderDescription& description, const Scene& scene,
+                    const AutomaticView& view) {
+  return withOptics(description,
+                    withLens(description, chooseWithoutLens(description, scene, view)));
 }
 
 namespace {
@@ -110,60 +112,62 @@ glm::dvec3 originFor(const Scene& scene, const std::string& file) {
   return glm::length(centre) > kFar * glm::length(box.size()) ? centre : glm::dvec3(0);
 }
 
-// The job's size; else the default height, with the aspect ratio of the model's camera. Throws
-// InputError if the image does not fit into the job's memory.
-void chooseSize(RenderDescription& job, const Scene& scene) {
-  RenderSettings& settings = job.settings;
-  if (job.size) {
-    settings.width = job.size->width;
-    settings.height = job.size->height;
-  } else if (!job.camera.placed && !scene.cameras.empty()) {
-    const float aspect = chooseCamera(job, scene, {}).aspect;
+// The description's size; else the default height, with the aspect ratio of the model's camera.
+// Throws InputError if the image does not fit into the description's memory.
+void chooseSize(RenderDescription& description, const Scene& scene) {
+  RenderSettings& settings = description.settings;
+  if (description.size) {
+    settings.width = description.size->width;
+    settings.height = description.size->height;
+  } else if (!description.camera.placed && !scene.cameras.empty()) {
+    const float aspect = chooseCamera(description, scene, {}).aspect;
     if (aspect > 0.05f && aspect < 20)
       settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
   }
   if (const auto& crop = settings.crop)
     if (crop->x + crop->width > settings.width || crop->y + crop->height > settings.height)
-      throwInput("{}: is not within the image of {}x{} pixels", job.origins.of("crop"),
+      throwInput("{}: is not within the image of {}x{} pixels", description.origins.of("crop"),
                  settings.width, settings.height);
-  const double needed = imageBytes(job), budget = memoryLimit(job);
+  const double needed = imageBytes(description), budget = memoryLimit(description);
   if (needed > budget)
     throw InputError(
         fmt::format("{}an image of {}x{} takes {:.3g} GB of memory; the limit is {:.3g} GB",
-                    job.origins.has("render.size") ? job.origins.of("render.size") + ": " : "",
+                    description.origins.has("render.size")
+                        ? description.origins.of("render.size") + ": "
+                        : "",
                     settings.width, settings.height, needed * 1e-9, budget * 1e-9),
         Remedy{"memory", {}});
 }
 
-PlacedModels modelsAtOrigin(const RenderDescription& job, const std::vector<ModelEntry>& models,
-                            ModelCache& cache) {
+PlacedModels modelsAtOrigin(const RenderDescription& description,
+                            const std::vector<ModelEntry>& models, ModelCache& cache) {
   PlacedModels placed;
-  placed.scene = loadModels(job, models, placed.origin, cache, placed.warnings);
-  if (job.scene) return placed;
+  placed.scene = loadModels(description, models, placed.origin, cache, placed.warnings);
+  if (description.scene) return placed;
   placed.origin = originFor(placed.scene, models.front().file);
   if (placed.origin != glm::dvec3(0))
-    placed.scene = loadModels(job, models, placed.origin, cache, placed.warnings);
+    placed.scene = loadModels(description, models, placed.origin, cache, placed.warnings);
   return placed;
 }
 
 // The view of time 0, also in the coordinates of that time: with the same rounding for all times.
-AutomaticView viewAtStart(const RenderDescription& job, const PlacedModels& now,
+AutomaticView viewAtStart(const RenderDescription& description, const PlacedModels& now,
                           ModelCache& cache) {
-  const AutomaticView view = automaticView(job, now.scene, now.origin);
-  if (!now.scene.isAnimated || !(view.camera || job.camera.turns)) return view;
-  std::vector<ModelEntry> start = job.models;
+  const AutomaticView view = automaticView(description, now.scene, now.origin);
+  if (!now.scene.isAnimated || !(view.camera || description.camera.turns)) return view;
+  std::vector<ModelEntry> start = description.models;
   for (ModelEntry& model : start)
     if (model.choice.animation) model.choice.animation->seconds = 0;
-  const PlacedModels first = modelsAtOrigin(job, start, cache);
-  return automaticView(job, first.scene, first.origin);
+  const PlacedModels first = modelsAtOrigin(description, start, cache);
+  return automaticView(description, first.scene, first.origin);
 }
 
 }  // namespace
 
-Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
+Scene loadModels(const RenderDescription& description, const std::vector<ModelEntry>& models,
                  const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings) {
   Scene scene;
-  if (job.scene) scene = *job.scene;
+  if (description.scene) scene = *description.scene;
   std::set<std::string> known(warnings.begin(), warnings.end());
   const auto add = [&](const std::string& line) {
     if (known.insert(line).second) warnings.push_back(line);
@@ -173,54 +177,56 @@ Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& mo
     const ModelEntry& model = models[i];
     const std::string name = elementName("models", i);
     GltfChoice choice = model.choice;
-    if (choice.animation) choice.animation->location = job.origins.of(name + ".choice.animation");
-    if (choice.variant) choice.variant->location = job.origins.of(name + ".choice.variant");
+    if (choice.animation)
+      choice.animation->location = description.origins.of(name + ".choice.animation");
+    if (choice.variant) choice.variant->location = description.origins.of(name + ".choice.variant");
     // Near the world's origin the translation is as exact as all coordinates.
     choice.origin = origin == glm::dvec3(0) ? origin : origin - model.translationRest;
     choice.cache = &cache;
-    choice.environment = !job.probe.file;
+    choice.environment = !description.probe.file;
     append(scene, loadGltf(model.file, model.placement, add, choice));
   }
-  const float factor = float(job.lighting.lamps);
+  const float factor = float(description.lighting.lamps);
   for (PunctualLight& light : scene.lights) light.intensity *= factor;
   return scene;
 }
 
-Camera cameraOf(const RenderDescription& job, const Scene& scene, const AutomaticView& view,
+Camera cameraOf(const RenderDescription& description, const Scene& scene, const AutomaticView& view,
                 const glm::dvec3& origin, double turn) {
   const AutomaticView here = view.seenFrom(origin);
-  const Camera camera = chooseCamera(job, scene, here);
-  if (!fillsImage(camera, double(job.settings.width) / job.settings.height))
+  const Camera camera = chooseCamera(description, scene, here);
+  if (!fillsImage(camera, double(description.settings.width) / description.settings.height))
     throwInput(
         "{}: the image folds back inside the frame, where (1 + k1 r^2 + k2 r^4) r does not "
         "ascend; `distortion` may be for another `fov`",
-        job.origins.of("camera.optics"));
-  return camera.turnedAround(here.centre, job.camera.orbit + turn);
+        description.origins.of("camera.optics"));
+  return camera.turnedAround(here.centre, description.camera.orbit + turn);
 }
 
-PlacedModels placeModels(RenderDescription& job, ModelCache& cache, const AutomaticView* view) {
-  PlacedModels placed = modelsAtOrigin(job, job.models, cache);
+PlacedModels placeModels(RenderDescription& description, ModelCache& cache,
+                         const AutomaticView* view) {
+  PlacedModels placed = modelsAtOrigin(description, description.models, cache);
   if (placed.scene.instances.empty() && !placed.scene.isAnimated)
-    throwInput("{}: the model has no triangles to render", job.sceneName());
+    throwInput("{}: the model has no triangles to render", description.sceneName());
   Scene& scene = placed.scene;
-  chooseSize(job, scene);
-  placed.view = view ? *view : viewAtStart(job, placed, cache);
-  placed.camera = cameraOf(job, scene, placed.view, placed.origin);
-  if (job.camera.shutter) openShutter(job, placed, cache);
+  chooseSize(description, scene);
+  placed.view = view ? *view : viewAtStart(description, placed, cache);
+  placed.camera = cameraOf(description, scene, placed.view, placed.origin);
+  if (description.camera.shutter) openShutter(description, placed, cache);
   placed.hasLights = !scene.lights.empty();
-  if (job.lighting.lamps == 0) scene.lights.clear();
-  for (const Lamp& lamp : job.lamps) addLamp(scene, lamp, placed.origin);
-  removeLamps(job, scene);
-  for (Material& material : scene.materials) material.singleSided = job.singleSided;
-  if (job.straightGlassShadows) passShadowsStraight(scene.materials);
+  if (description.lighting.lamps == 0) scene.lights.clear();
+  for (const Lamp& lamp : description.lamps) addLamp(scene, lamp, placed.origin);
+  removeLamps(description, scene);
+  for (Material& material : scene.materials) material.singleSided = description.singleSided;
+  if (description.straightGlassShadows) passShadowsStraight(scene.materials);
   return placed;
 }
 
-Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
+Camera placeCamera(RenderDescription& description, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin) {
-  chooseSize(job, scene);
-  Camera camera = cameraOf(job, scene, view, origin);
-  if (job.camera.shutter) turnCamera(job, scene, view, origin, camera);
+  chooseSize(description, scene);
+  Camera camera = cameraOf(description, scene, view, origin);
+  if (description.camera.shutter) turnCamera(description, scene, view, origin, camera);
   return camera;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The models of a job in the scene's coordinates, and its camera.
+// The models of a description in the scene's coordinates, and its camera.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace chromeball {
 
-// The camera of a job: the scene file's, the model's, or one that frames the model.
+// The camera of a description: the scene file's, the model's, or one that frames the model.
 
 struct RenderDescription;
 
@@ -25,13 +25,14 @@ struct AutomaticView {
   AutomaticView seenFrom(const glm::dvec3& other) const;  // with another origin
 };
 
-// The job's size must be final.
-AutomaticView automaticView(const RenderDescription& job, const Scene& scene,
+// The description's size must be final.
+AutomaticView automaticView(const RenderDescription& description, const Scene& scene,
                             const glm::dvec3& origin);
 
 // The camera before its `orbit`. Throws InputError for a camera that the model does not have, or a
 // lens for an orthographic one.
-Camera chooseCamera(const RenderDescription& job, const Scene& scene, const AutomaticView& view);
+Camera chooseCamera(const RenderDescription& description, const Scene& scene,
+                    const AutomaticView& view);
 
 struct ModelCache;
 
@@ -46,25 +47,26 @@ struct PlacedModels {
   std::vector<std::string> warnings;
 };
 
-// Reads the models; chooses the camera, and the image's size if the job leaves it to the camera.
-// Converts what the scene file places in the world to the scene's coordinates. If the shutter is
-// open, includes the motion of models and camera. `view`: from other frames; null: to be found.
-// Throws InputError.
-PlacedModels placeModels(RenderDescription& job, ModelCache& cache,
+// Reads the models; chooses the camera, and the image's size if the description leaves it to the
+// camera. Converts what the scene file places in the world to the scene's coordinates. If the
+// shutter is open, includes the motion of models and camera. `view`: from other frames; null: to be
+// found. Throws InputError.
+PlacedModels placeModels(RenderDescription& description, ModelCache& cache,
                          const AutomaticView* view = nullptr);
 
 // The same for models that stand still: only the camera is placed again.
-Camera placeCamera(RenderDescription& job, const Scene& scene, const AutomaticView& view,
+Camera placeCamera(RenderDescription& description, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin);
 
-// Loads `models`, the job's at some time, at this origin and without lamps, but with their lights,
-// which are black if the job switches them off; an animated model may have no triangles at its
-// time. `warnings`: each once.
-Scene loadModels(const RenderDescription& job, const std::vector<ModelEntry>& models,
+// Loads `models`, the description's at some time, at this origin and without lamps, but with their
+// lights, which are black if the description switches them off; an animated model may have no
+// triangles at its time. `warnings`: each once.
+Scene loadModels(const RenderDescription& description, const std::vector<ModelEntry>& models,
                  const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings);
 
-// The camera with the job's `orbit` and another turn, degrees; it stands still. Throws InputError.
-Camera cameraOf(const RenderDescription& job, const Scene& scene, const AutomaticView& view,
+// The camera with the description's `orbit` and another turn, degrees; it stands still. Throws
+// InputError.
+Camera cameraOf(const RenderDescription& description, const Scene& scene, const AutomaticView& view,
                 const glm::dvec3& origin, double turn = 0);
 
 }  // namespace chromeball

@@ -26,20 +26,20 @@ CompositeReport::Reflectance solveReflectance(const LoadedScene& loaded,
                                               const PreparedScene& prepared,
                                               const Progress& progress,
                                               const std::atomic<bool>& stop) {
-  const RenderDescription& job = loaded.description;
+  const RenderDescription& description = loaded.description;
   const ReflectanceProblem problem{*prepared.world, loaded.camera, *prepared.lighting,
-                                   job.composite->plate};
-  RenderSettings settings = job.settings;
+                                   description.composite->plate};
+  RenderSettings settings = description.settings;
   settings.denoise = false;  // only the composite is denoised
   settings.crop.reset();     // all parts of a render need the same reflectance
   settings.samples = settings.samplesOfAll();
   settings.shard = {};
   const ReflectanceSolution solution =
-      job.composite->reflectance == CompositeDescription::Reflectance::Flat
+      description.composite->reflectance == CompositeDescription::Reflectance::Flat
           ? solveFlatReflectance(problem, settings, flatIrradiance(loaded), *loaded.projection,
                                  stop)
-          : solveReflectance(problem, settings, job.composite->iterations, *loaded.projection,
-                             progress, stop);
+          : solveReflectance(problem, settings, description.composite->iterations,
+                             *loaded.projection, progress, stop);
   const double clamped = double(solution.clamped) / double(std::max<size_t>(solution.pixels, 1));
   return {solution.pixels, clamped, solution.exposureRatio, solution.lastChange};
 }
@@ -72,28 +72,28 @@ Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale) {
 
 }  // namespace
 
-JobResult renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
-                          const Progress& progress, const std::atomic<bool>& stop,
-                          RenderControl* control) {
-  const RenderDescription& job = loaded.description;
-  const CompositeDescription& plan = *job.composite;
+FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
+                               const Progress& progress, const std::atomic<bool>& stop,
+                               RenderControl* control) {
+  const RenderDescription& description = loaded.description;
+  const CompositeDescription& plan = *description.composite;
   const bool solves = loaded.projection != nullptr;
-  const double share = job.settings.denoisesAtEnd() ? kRenderShare : 1;
+  const double share = description.settings.denoisesAtEnd() ? kRenderShare : 1;
   std::optional<CompositeReport::Reflectance> reflectance;
   if (solves)
     reflectance = solveReflectance(
         loaded, prepared, [&](double fraction) { progress(share * fraction / 2); }, stop);
   const bool needsBehind = std::ranges::count(plan.layers, "l_noobj") > 0;
   CompositeRender rendered = renderComposite(
-      *prepared.world, loaded.camera, *prepared.lighting, plan.plate, job.settings, plan.passes,
-      needsBehind,
+      *prepared.world, loaded.camera, *prepared.lighting, plan.plate, description.settings,
+      plan.passes, needsBehind,
       [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); }, stop,
       control);
   FinishedImage finished =
       finishComposite(finishPlan(loaded, rendered.result), rendered, progress, stop);
   finished.composite->reflectance = reflectance;
-  Messages messages = warningsOf(*finished.composite, job.probe.scale);
-  const auto& limit = job.settings.noiseLimit;
+  Messages messages = warningsOf(*finished.composite, description.probe.scale);
+  const auto& limit = description.settings.noiseLimit;
   if (limit && plan.passes == Passes::Two && !rendered.result.interrupted &&
       finished.noise.noise > *limit)
     messages.push_back(
@@ -145,19 +145,19 @@ Ground clipped(Ground ground, const Surroundings& around, const std::string& loc
   return ground;
 }
 
-void placeGround(const RenderDescription& job, LoadedScene& loaded) {
-  const CompositeDescription& composite = *job.composite;
-  const std::string location =
-      job.origins.of(job.origins.has("composite.ground") ? "composite.ground" : "shadow-catcher");
+void placeGround(const RenderDescription& description, LoadedScene& loaded) {
+  const CompositeDescription& composite = *description.composite;
+  const std::string location = description.origins.of(
+      description.origins.has("composite.ground") ? "composite.ground" : "shadow-catcher");
   if (loaded.surroundings && loaded.room)
     throwInput(
         "{}: the ground needs a distant probe, or a box or sphere as [surroundings]; model it",
         location);
   const double height = composite.groundHeight - loaded.origin.y;
   const Bounds objects = bounds(loaded.scene);
-  Ground ground =
-      groundAround(loaded.camera, float(job.settings.width) / float(job.settings.height), objects,
-                   float(height), location);
+  Ground ground = groundAround(
+      loaded.camera, float(description.settings.width) / float(description.settings.height),
+      objects, float(height), location);
   if (loaded.surroundings) ground = clipped(ground, *loaded.surroundings, location);
   const double depth = double(ground.height) - double(objects.min.y);
   if (depth > 1e-3 * glm::length(objects.size()))
@@ -172,25 +172,25 @@ void placeGround(const RenderDescription& job, LoadedScene& loaded) {
 }  // namespace
 
 void prepareLocalScene(LoadedScene& loaded) {
-  RenderDescription& job = loaded.description;
-  CompositeDescription& composite = *job.composite;
+  RenderDescription& description = loaded.description;
+  CompositeDescription& composite = *description.composite;
   const CompositeEntry& entry = composite.entry;
   Scene& scene = loaded.scene;
-  const std::string location = job.origins.of("composite.entry");
+  const std::string location = description.origins.of("composite.entry");
   std::vector<NamedSetting> localScene;
   for (size_t i = 0; i < entry.localScene.size(); ++i)
-    localScene.push_back(
-        {entry.localScene[i], job.origins.of(elementName("composite.entry.localScene", i))});
+    localScene.push_back({entry.localScene[i],
+                          description.origins.of(elementName("composite.entry.localScene", i))});
   if (hasGround(composite, scene)) {
     std::erase_if(localScene, [&](const NamedSetting& node) { return node.name == kGround; });
-    placeGround(job, loaded);
+    placeGround(description, loaded);
     localScene.push_back({kGroundNode, location});
   }
   loaded.isObject = findObjects(scene, localScene, location);
   if (composite.choosesReflectance && hasLamps(scene))
     composite.reflectance = CompositeDescription::Reflectance::Plate;
   if (composite.reflectance == CompositeDescription::Reflectance::Flat) {
-    const std::string reflectance = job.origins.of("composite.reflectance");
+    const std::string reflectance = description.origins.of("composite.reflectance");
     if (!flatNormal(scene, loaded.isObject))
       throwInput("{}: the local scene is not flat; give \"plate\"", reflectance);
     if (isLayered(scene, loaded.isObject))
@@ -198,7 +198,7 @@ void prepareLocalScene(LoadedScene& loaded) {
           "{}: needs matte surfaces, and there are coats, sheen or transmission; give "
           "\"plate\"",
           reflectance);
-    if (job.surroundings)
+    if (description.surroundings)
       throwInput("{}: needs a distant probe, and there are [surroundings]; give \"plate\"",
                  reflectance);
     if (hasLamps(scene))
@@ -206,8 +206,8 @@ void prepareLocalScene(LoadedScene& loaded) {
                  reflectance);
   }
   if (composite.reflectance != CompositeDescription::Reflectance::Model) {
-    loaded.projection =
-        std::make_unique<Projection>(loaded.camera, job.settings.width, job.settings.height);
+    loaded.projection = std::make_unique<Projection>(loaded.camera, description.settings.width,
+                                                     description.settings.height);
     makeProjected(scene, loaded.isObject, *loaded.projection);
   }
   if (composite.specular || composite.roughness)
@@ -216,9 +216,9 @@ void prepareLocalScene(LoadedScene& loaded) {
 }
 
 void scaleProbeByPlate(LoadedScene& loaded) {
-  const RenderDescription& job = loaded.description;
-  if (!job.probe.isScaledByPlate) return;
-  const std::string location = job.origins.of("probe.scale");
+  const RenderDescription& description = loaded.description;
+  if (!description.probe.isScaledByPlate) return;
+  const std::string location = description.origins.of("probe.scale");
   if (hasLamps(loaded.scene))
     throwInput(
         "{}: scale = \"plate\" needs the probe as the only light; the model has lights of its "
@@ -231,19 +231,19 @@ void scaleProbeByPlate(LoadedScene& loaded) {
   const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
   const std::vector<size_t> pixels =
       pixelsThatShow(int(ground - local.nodeNames.begin()), local, loaded.camera,
-                     job.settings.width, job.settings.height);
+                     description.settings.width, description.settings.height);
   const Rgb irradiance = irradianceOn(loaded.probe, vec3(0, 1, 0));
-  const CompositeEntry& entry = job.composite->entry;
+  const CompositeEntry& entry = description.composite->entry;
   const auto isPositive = [](const Rgb& c) { return c.x > 0 && c.y > 0 && c.z > 0; };
   if (pixels.empty()) throwInput("{}: no pixel shows the ground", location);
   if (!isPositive(irradiance))
     throwInput("{}: the probe gives the ground no light in one channel or all", location);
   PlateScale scale =
-      scaleByPlate(job.composite->plate, pixels, irradiance, entry.groundReflectance);
+      scaleByPlate(description.composite->plate, pixels, irradiance, entry.groundReflectance);
   if (!isPositive(scale.scale) || !isFinite(scale.scale))
     throwInput("{}: the plate is black where it shows the ground, in one channel or all", location);
   loaded.probe = scaled(loaded.probe, scale.scale);
-  loaded.sources = sourcesOf(job, loaded.loadedProbe, loaded.probe);
+  loaded.sources = sourcesOf(description, loaded.loadedProbe, loaded.probe);
   loaded.plateScale = scale;
 }
 

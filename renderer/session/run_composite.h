@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders a job with [composite].
+// Renders a description with [composite].
 #pragma once
 
 #include "session/load_scene.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 
 namespace chromeball {
 
-// Estimates the local scene's reflectance if the job requests it, then renders the composite.
-JobResult renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
-                          const Progress& progress, const std::atomic<bool>& stop,
-                          RenderControl* control);
+// Estimates the local scene's reflectance if the description requests it, then renders the
+// composite.
+FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
+                               const Progress& progress, const std::atomic<bool>& stop,
+                               RenderControl* control);
 
 // The local scene of a composite, and the probe's scale by its plate.
 
@@ -18,7 +19,8 @@ JobResult renderComposite(const LoadedScene& loaded, const PreparedScene& prepar
 // the local scene's reflectance and gloss. Throws InputError.
 void prepareLocalScene(LoadedScene& loaded);
 
-// Scales the probe by the plate, if the job says so, after prepareLocalScene(). Throws InputError.
+// Scales the probe by the plate, if the description says so, after prepareLocalScene(). Throws
+// InputError.
 void scaleProbeByPlate(LoadedScene& loaded);
 
 }  // namespace chromeball

@@ -15,15 +15,15 @@
 namespace chromeball {
 namespace {
 
-void checkSuns(const RenderDescription& job, bool hasSuns) {
-  if (job.lighting.from == LightFrom::Suns && !hasSuns)
+void checkSuns(const RenderDescription& description, bool hasSuns) {
+  if (description.lighting.from == LightFrom::Suns && !hasSuns)
     throwInput("{}: there are no suns, neither in the probe nor in the scene file",
-               job.origins.of("lighting.from"));
+               description.origins.of("lighting.from"));
 }
 
 // Throws InputError if the part is to be the suns, and there are none.
-void keepPart(const RenderDescription& job, const Scene& scene, LoadedProbe& loaded) {
-  const LightFrom from = job.lighting.from;
+void keepPart(const RenderDescription& description, const Scene& scene, LoadedProbe& loaded) {
+  const LightFrom from = description.lighting.from;
   if (from == LightFrom::All) return;
   Image& latLong = loaded.latLong;
   SunExtraction extraction = extractSuns(latLong);
@@ -32,7 +32,7 @@ void keepPart(const RenderDescription& job, const Scene& scene, LoadedProbe& loa
     latLong = std::move(extraction.remainder);
     return;
   }
-  checkSuns(job, loaded.hasSuns || !scene.suns.empty());
+  checkSuns(description, loaded.hasSuns || !scene.suns.empty());
   for (size_t i = 0; i < latLong.texels.size(); ++i)
     latLong.texels[i] -= extraction.remainder.texels[i];
 }
@@ -47,13 +47,14 @@ void checkProbeMap(const Image& map) {
                  i / 3 % size_t(map.width), i / 3 / size_t(map.width));
 }
 
-LoadedProbe loadWholeProbe(const RenderDescription& job, Scene& scene) {
-  if (job.probe.file)
-    return loadProbe(*job.probe.file, job.probe.mapping, job.origins.of("probe.mapping"));
+LoadedProbe loadWholeProbe(const RenderDescription& description, Scene& scene) {
+  if (description.probe.file)
+    return loadProbe(*description.probe.file, description.probe.mapping,
+                     description.origins.of("probe.mapping"));
   LoadedProbe loaded;
-  if (job.probe.map) {
-    checkProbeMap(*job.probe.map);
-    loaded.latLong = *job.probe.map;
+  if (description.probe.map) {
+    checkProbeMap(*description.probe.map);
+    loaded.latLong = *description.probe.map;
     loaded.fileWidth = loaded.latLong.width, loaded.fileHeight = loaded.latLong.height;
     return loaded;
   }
@@ -61,7 +62,7 @@ LoadedProbe loadWholeProbe(const RenderDescription& job, Scene& scene) {
     loaded.latLong = std::move(*scene.environment);
     return loaded;
   }
-  checkLit(job, scene);
+  checkLit(description, scene);
   loaded.latLong = Image(2, 1, 3);
   return loaded;
 }
@@ -93,8 +94,8 @@ std::unique_ptr<LightSource> withSources(std::unique_ptr<LightSource> lighting,
 
 }  // namespace
 
-void removeLamps(const RenderDescription& job, Scene& scene) {
-  const LightFrom from = job.lighting.from;
+void removeLamps(const RenderDescription& description, Scene& scene) {
+  const LightFrom from = description.lighting.from;
   if (from == LightFrom::Rest) scene.suns.clear();
   if (from != LightFrom::Suns) return;
   scene.lights.clear();
@@ -105,25 +106,27 @@ void removeLamps(const RenderDescription& job, Scene& scene) {
   }
 }
 
-void checkLit(const RenderDescription& job, const Scene& scene) {
-  checkSuns(job, !scene.suns.empty());
-  const bool lit = !scene.lights.empty() || std::ranges::any_of(job.lamps, [](const Lamp& l) {
-    return l.sun || l.ambient;
-  }) || std::ranges::any_of(scene.materials, &Material::emits);
+void checkLit(const RenderDescription& description, const Scene& scene) {
+  checkSuns(description, !scene.suns.empty());
+  const bool lit =
+      !scene.lights.empty() ||
+      std::ranges::any_of(description.lamps, [](const Lamp& l) { return l.sun || l.ambient; }) ||
+      std::ranges::any_of(scene.materials, &Material::emits);
   if (!lit)
-    throw InputError(fmt::format("{}: nothing lights the scene; it needs a probe", job.sceneName()),
-                     Remedy{"probe.file", {}});
+    throw InputError(
+        fmt::format("{}: nothing lights the scene; it needs a probe", description.sceneName()),
+        Remedy{"probe.file", {}});
 }
 
-LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene) {
+LoadedProbe loadProbeOf(const RenderDescription& description, Scene& scene) {
   reportWork("probe", 0);
-  LoadedProbe loaded = loadWholeProbe(job, scene);
-  keepPart(job, scene, loaded);
+  LoadedProbe loaded = loadWholeProbe(description, scene);
+  keepPart(description, scene, loaded);
   return loaded;
 }
 
-Probe probeOf(const RenderDescription& job, LoadedProbe& loaded) {
-  Probe probe(loaded.latLong, job.probe.rotation, Rgb(job.probe.scale));
+Probe probeOf(const RenderDescription& description, LoadedProbe& loaded) {
+  Probe probe(loaded.latLong, description.probe.rotation, Rgb(description.probe.scale));
   loaded.latLong = {};
   return probe;
 }
@@ -140,12 +143,12 @@ Rgb irradianceOn(const Probe& probe, const vec3& normal) {
   return Rgb(exactIrradiance(probe.latLong(), {&turned, 1})[0]);
 }
 
-std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const LoadedProbe& loaded,
-                                      const Probe& probe) {
-  const std::vector<SourceEntry>& entries = job.sources;
-  if (entries.empty() || job.lighting.from == LightFrom::Suns) return {};
+std::optional<ProbeSources> sourcesOf(const RenderDescription& description,
+                                      const LoadedProbe& loaded, const Probe& probe) {
+  const std::vector<SourceEntry>& entries = description.sources;
+  if (entries.empty() || description.lighting.from == LightFrom::Suns) return {};
   if (loaded.fileWidth == 0)
-    throwInput("{}: [[source]] needs a probe", job.origins.of(elementName("sources", 0)));
+    throwInput("{}: [[source]] needs a probe", description.origins.of(elementName("sources", 0)));
   std::vector<PolygonLight> lights;
   Image rest = probe.latLong();
   // The illums come first: the light that they take stays visible.
@@ -156,7 +159,7 @@ std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const Loaded
     for (size_t i = 0; i < entries.size(); ++i) {
       const SourceEntry& entry = entries[i];
       if (entry.isIllum != isIllum) continue;
-      locations.push_back(job.origins.of(elementName("sources", i)));
+      locations.push_back(description.origins.of(elementName("sources", i)));
       polygons.push_back(polygonOf(entry.corners, loaded, locations.back()));
       lights.push_back({{polygons.back(), dvec3(0)}, isIllum, entry.name});
     }
@@ -185,13 +188,13 @@ std::unique_ptr<LightSource> makeLighting(const NamedSetting& strategy, Mis mis,
 }
 
 std::unique_ptr<LightSource> makeLighting(const LoadedScene& loaded) {
-  const RenderDescription& job = loaded.description;
+  const RenderDescription& description = loaded.description;
   reportWork("lighting", 0);
-  const bool splitsProbe = job.settings.wantsGroups();
-  if (job.lighting.make)
-    return withSources(job.lighting.make(sampledProbe(loaded)), loaded, splitsProbe);
-  return makeLighting({job.lighting.strategy, job.origins.of("lighting.strategy")},
-                      job.settings.mis, loaded, splitsProbe);
+  const bool splitsProbe = description.settings.wantsGroups();
+  if (description.lighting.make)
+    return withSources(description.lighting.make(sampledProbe(loaded)), loaded, splitsProbe);
+  return makeLighting({description.lighting.strategy, description.origins.of("lighting.strategy")},
+                      description.settings.mis, loaded, splitsProbe);
 }
 
 std::unique_ptr<const EnvironmentLight> makeEnvironment(IntegratorKind integrator,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light of a job: its probe, and the strategy that samples it.
+// The light of a description: its probe, and the strategy that samples it.
 #pragma once
 
 #include <algorithm>
@@ -18,15 +18,15 @@ namespace chromeball {
 struct LoadedScene;
 
 // Throws InputError if nothing lights a scene that has no probe.
-void checkLit(const RenderDescription& job, const Scene& scene);
+void checkLit(const RenderDescription& description, const Scene& scene);
 
-// Removes the lamps and emission that the job leaves out.
-void removeLamps(const RenderDescription& job, Scene& scene);
+// Removes the lamps and emission that the description leaves out.
+void removeLamps(const RenderDescription& description, Scene& scene);
 
-// The probe's map, or the part of it that the job renders: from the job's file, else the model's
-// own environment, which is moved out of `scene`, else black if the scene has lights of its own.
-// Throws InputError.
-LoadedProbe loadProbeOf(const RenderDescription& job, Scene& scene);
+// The probe's map, or the part of it that the description renders: from the description's file,
+// else the model's own environment, which is moved out of `scene`, else black if the scene has
+// lights of its own. Throws InputError.
+LoadedProbe loadProbeOf(const RenderDescription& description, Scene& scene);
 
 // The polygons of the probe that are sources of their own ([[source]]), and what is left of it.
 struct ProbeSources {
@@ -39,12 +39,13 @@ struct ProbeSources {
     return std::ranges::any_of(lights, [](const PolygonLight& l) { return !l.isIllum; });
   }
 };
-// Nullopt if the job renders none. `loaded`: the file that `probe` is from. Throws InputError.
-std::optional<ProbeSources> sourcesOf(const RenderDescription& job, const LoadedProbe& loaded,
-                                      const Probe& probe);
+// Nullopt if the description renders none. `loaded`: the file that `probe` is from. Throws
+// InputError.
+std::optional<ProbeSources> sourcesOf(const RenderDescription& description,
+                                      const LoadedProbe& loaded, const Probe& probe);
 
-// The probe with the job's rotation and scale; frees the map.
-Probe probeOf(const RenderDescription& job, LoadedProbe& loaded);
+// The probe with the description's rotation and scale; frees the map.
+Probe probeOf(const RenderDescription& description, LoadedProbe& loaded);
 
 // The probe with every channel multiplied by its factor.
 Probe scaled(const Probe& probe, const Rgb& factor);

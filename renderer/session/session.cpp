@@ -13,9 +13,9 @@
 #include "render/live_result.h"
 #include "render/render_state.h"
 #include "scene/gltf/model_cache.h"
-#include "session/job_report.h"
 #include "session/live_image.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
+#include "session/render_report.h"
 #include "session/scene_lighting.h"
 #include "trace/built_geometry.h"
 
@@ -189,8 +189,8 @@ void Session::Implementation::render() {
     report("render", fraction);
   };
   progress(0);
-  JobResult result =
-      renderJob(*loaded_, prepared_, progress, stop_, hasTwoPasses ? nullptr : control_.get());
+  FinishedRender result =
+      renderLoaded(*loaded_, prepared_, progress, stop_, hasTwoPasses ? nullptr : control_.get());
   if (!result.render.interrupted) progress(1);
   result.image.metadata = imageMetadata(*loaded_, result, result.render, result.seconds);
   say(result.messages);

@@ -17,7 +17,7 @@ struct ImageSoFar {
   bool isLast = false;  // of this render
 };
 
-// Includes the layers variance and samples, even if the job does not write them.
+// Includes the layers variance and samples, even if the description does not ask for them.
 ImageSoFar imageSoFar(FinishedImage finished, const RenderResult& render);
 
 class Viewer {

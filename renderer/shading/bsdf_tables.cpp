@@ -7,8 +7,8 @@
 
 #include "base/parallel.h"
 #include "math/warp.h"
-#include "shading/charlie.h"
 #include "shading/fresnel.h"
+#include "shading/sheen.h"
 
 namespace chromeball {
 namespace {

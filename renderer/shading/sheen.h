@@ -11,7 +11,20 @@
 
 namespace chromeball {
 
-// Microfacets of the "Charlie" distribution (charlie.h). Roughness below 0.1 counts as 0.1.
+// The "Charlie" distribution of fibres that stand up from a surface, in the frame of the normal, +z
+// (Estevez and Kulla 2017, "Production Friendly Microfacet Sheen BRDF").
+namespace charlie {
+
+// The fit of the masking term is poor below this perceptual roughness.
+inline constexpr float kMinRoughness = 0.1f;
+
+// f |cos| of the white lobe, for unit directions above the surface: D G2 / (4 wo.z). `alpha`: the
+// square of perceptual roughness.
+float fCos(const vec3& wo, const vec3& wi, float alpha);
+
+}  // namespace charlie
+
+// Microfacets of the "Charlie" distribution. Roughness below 0.1 counts as 0.1.
 class Sheen {
  public:
   Sheen(const Rgb& color, float roughness, const Surface& surface, const vec3& wo,

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "session/job_description.h"
+#include "session/image_header.h"
 
 namespace chromeball {
 

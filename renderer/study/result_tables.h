@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "measure/bias_variance.h"
-#include "session/job_report.h"
+#include "session/render_report.h"
 #include "study/results.h"
 
 namespace chromeball {

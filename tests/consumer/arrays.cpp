@@ -38,7 +38,7 @@ int main() try {
   RenderDescription description;
   description.scene = tetrahedron();
   description.probe.map = sky();
-  description.lighting.strategy = "importance";
+  description.lighting.strategy = "importance";  // without it, "auto"
   description.camera.placed =
       CameraEntry{.position = {0, 1, 4}, .target = {0, 0.6, 0}, .up = {0, 1, 0}};
   description.size = ImageSize{160, 120};
@@ -58,8 +58,10 @@ int main() try {
   session.update(description);  // reads and builds nothing again but the tables of the probe
   session.start();
   writeImage("turned.exr", session.wait().image);
-  std::printf("%d snapshots\n", snapshots);
-} catch (const InputError& error) {
+  const Session::Work work = session.work();
+  std::printf("%d snapshots; again: scene %d, probe %d, lighting %d\n", snapshots, work.loadedScene,
+              work.loadedProbe, work.preparedLighting);
+} catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 2;
 }

@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: consumer SCENE.toml\n"), 2;
-  chromeball::Session session(chromeball::planJob(chromeball::openScene(argv[1])));
+  chromeball::Session session(chromeball::planRender(chromeball::openScene(argv[1])));
   session.start();
 
   // Radiance, linear Rec. 709: red, green and blue of the top left pixel first.
@@ -18,7 +18,7 @@ int main(int argc, char** argv) try {
   const double pixels = double(image.width) * image.height;
   std::printf("%d %d %.9g %.9g %.9g\n", image.width, image.height, sum[0] / pixels, sum[1] / pixels,
               sum[2] / pixels);
-} catch (const chromeball::InputError& error) {
+} catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 2;
 }

@@ -37,7 +37,7 @@ Image rendered(const RenderDescription& description) {
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: strategy SCENE.toml\n"), 2;
-  RenderDescription description = planJob(openScene(argv[1]));
+  RenderDescription description = planRender(openScene(argv[1]));
   description.settings.samples = 4096;
   const Image reference = rendered(description);
   description.settings.samples = 16;
@@ -50,7 +50,7 @@ int main(int argc, char** argv) try {
       };
     std::printf("%s %.4g\n", name, imageError(rendered(description), reference).relMse);
   }
-} catch (const InputError& error) {
+} catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 2;
 }

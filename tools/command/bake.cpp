@@ -16,14 +16,14 @@
 #include "messages.h"
 #include "progress_bar.h"
 #include "session/memory_estimate.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 #include "thread_limit.h"
 
 namespace chromeball {
 namespace {
 
 // Baked ambient occlusion has options of its own, not a render's.
-RenderDescription plannedJob(const BakeOptions& a) {
+RenderDescription plannedRender(const BakeOptions& a) {
   SceneFile scene = openScene(a.scene);
   if (scene.composite)
     throwInput("{}: a composite cannot be baked; bake its model",
@@ -32,15 +32,15 @@ RenderDescription plannedJob(const BakeOptions& a) {
   Settings settings = a.settings;
   if (a.light() == BakedLight::AmbientOcclusion) dropLight(scene, settings);
   settings.erase("render.ao_distance");
-  return planJob(std::move(scene), settings);
+  return planRender(std::move(scene), settings);
 }
 
-BakeSettings bakeSettings(const BakeOptions& a, const RenderDescription& job) {
+BakeSettings bakeSettings(const BakeOptions& a, const RenderDescription& description) {
   BakeSettings settings;
   settings.what = a.light();
-  settings.samples = job.settings.samples;
-  settings.seed = job.settings.seed;
-  settings.maxDepth = job.settings.maxDepth;
+  settings.samples = description.settings.samples;
+  settings.seed = description.settings.seed;
+  settings.maxDepth = description.settings.maxDepth;
   if (const auto distance = a.settings.getIfGiven<double>("render.ao_distance"))
     settings.distance = float(*distance);
   return settings;
@@ -50,7 +50,7 @@ class Bake {
  public:
   explicit Bake(const BakeOptions& options)
       : options_(options),
-        loaded_(loadScene(plannedJob(options))),
+        loaded_(loadScene(plannedRender(options))),
         settings_(bakeSettings(options, loaded_.description)),
         meshes_(placedMeshes(loaded_.scene)) {
     checkDistinct({options.output, options.toVertices() ? "" : options.lightmapPath()},

@@ -20,13 +20,13 @@ RenderDescription basisJob(const SceneOptions& options, SceneCommand command) {
   scene.sources.clear();
   scene.probeTurns.clear();
   scene.lamps.push_back({.ambient = AmbientLamp{}});  // black: no scene needs a light of its own
-  RenderDescription job = planJob(std::move(scene), options.settings);
-  job.settings.crop.reset();
-  return job;
+  RenderDescription description = planRender(std::move(scene), options.settings);
+  description.settings.crop.reset();
+  return description;
 }
 
-LoadedScene loadBasisScene(const RenderDescription& job) {
-  LoadedScene loaded = loadScene(job);
+LoadedScene loadBasisScene(const RenderDescription& description) {
+  LoadedScene loaded = loadScene(description);
   std::erase_if(loaded.scene.ambient, [](const auto& lamp) { return isBlack(lamp.radiance); });
   return loaded;
 }

@@ -25,12 +25,12 @@ int ceilDivide(int a, int b) { return (a + b - 1) / b; }
 // The rows of a band: all rows if they fit into the memory; else whole tiles, in bands of about
 // equal height.
 int rowsOfBand(const LoadedScene& loaded, const DirectionBasis& basis) {
-  const RenderDescription& job = loaded.description;
+  const RenderDescription& description = loaded.description;
   constexpr int kTile = TileGrid::kSize;
-  const RenderSettings& s = job.settings;
+  const RenderSettings& s = description.settings;
   checkStageSize(basis, s.width, s.height, "--directions");
   const MemoryEstimate estimate = estimateMemory(loaded);
-  const double limit = memoryLimit(job);
+  const double limit = memoryLimit(description);
   const double row = elementBytes(basis) * s.width + estimate.images / s.height;
   const double rest = estimate.peak - estimate.images + StageWriter::bufferBytes(basis, s.width);
   const double most = (limit - rest) / row;
@@ -47,12 +47,12 @@ int rowsOfBand(const LoadedScene& loaded, const DirectionBasis& basis) {
   return ceilDivide(ceilDivide(s.height, bands), kTile) * kTile;
 }
 
-Metadata metadataOf(const SceneOptions& options, const RenderDescription& job) {
+Metadata metadataOf(const SceneOptions& options, const RenderDescription& description) {
   return {{"Software", std::string("chromeball " CHROMEBALL_VERSION)},
           {"scene", options.scene},
-          {"samples", int(job.settings.samples)},
-          {"seed", std::to_string(job.settings.seed)},
-          {"max_depth", job.settings.maxDepth}};
+          {"samples", int(description.settings.samples)},
+          {"seed", std::to_string(description.settings.seed)},
+          {"max_depth", description.settings.maxDepth}};
 }
 
 struct Written {
@@ -86,19 +86,19 @@ void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
   const DirectionBasis basis(own.directions, "--directions");
   checkOutputFile(own.out, {".exr"});
   const ThreadLimit threads = threadLimit(options.settings);
-  RenderDescription job = basisJob(options, SceneCommand::Basis);
-  const LoadedScene loaded = loadBasisScene(job);
-  job = loaded.description;
+  RenderDescription description = basisJob(options, SceneCommand::Basis);
+  const LoadedScene loaded = loadBasisScene(description);
+  description = loaded.description;
   checkDistinct({own.out}, loaded.files);
   const int rows = rowsOfBand(loaded, basis);
-  const RenderSettings& s = job.settings;
+  const RenderSettings& s = description.settings;
   const World world(loaded.scene, {}, BsdfTables(loaded.scene.materials, false));
   print(loaded.messages, options.quiet());  // after the last error that input can cause
   const BasisRenderer renderer(world, loaded.camera, basis, s);
   catchInterrupts();
   const Written written = [&] {
     ProgressBar bar(options.showsProgress());
-    return writeStage(renderer, s, rows, own, metadataOf(options, job),
+    return writeStage(renderer, s, rows, own, metadataOf(options, description),
                       [&](double done) { bar.update(done); });
   }();
   if (const InvalidSamples& invalid = written.invalid; invalid.total() > 0)

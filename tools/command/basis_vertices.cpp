@@ -25,10 +25,10 @@ void check(const SceneOptions& options, const BasisVerticesOptions& own) {
 }
 
 RenderDescription transferJob(const SceneOptions& options) {
-  RenderDescription job = basisJob(options, SceneCommand::BasisVertices);
-  if (job.settings.maxDepth < 1)
+  RenderDescription description = basisJob(options, SceneCommand::BasisVertices);
+  if (description.settings.maxDepth < 1)
     throwInput("--max-depth: should be 1 (direct light) or more for transfer");
-  return job;
+  return description;
 }
 
 class BasisVertices {

@@ -18,8 +18,8 @@
 #include "commands.h"
 #include "messages.h"
 #include "option_typos.h"
-#include "session/job_report.h"
 #include "session/memory_estimate.h"
+#include "session/render_report.h"
 
 namespace chromeball {
 namespace {

@@ -16,9 +16,9 @@
 #include "messages.h"
 #include "progress_bar.h"
 #include "scene_options.h"
-#include "session/job_description.h"
-#include "session/job_report.h"
-#include "session/run_job.h"
+#include "session/image_header.h"
+#include "session/render_loaded.h"
+#include "session/render_report.h"
 #include "study/report/report.h"
 #include "study/report/report_images.h"
 #include "study/result_tables.h"
@@ -202,26 +202,27 @@ void compare(const CompareArguments& a) {
   const bool hadComposite = scene.composite.has_value();
   scene.composite.reset();
   dropUnheeded(scene, SceneCommand::Compare);
-  RenderDescription job = planJob(std::move(scene), a.scene.settings);
+  RenderDescription description = planRender(std::move(scene), a.scene.settings);
   Messages ofRows;
   Study study = planStudy(a, ofRows);
   const ThreadLimit threads = threadLimit(a.scene.settings);
-  const LoadedScene loaded = loadScene(job);
-  job = loaded.description;
+  const LoadedScene loaded = loadScene(description);
+  description = loaded.description;
   const ReportFiles files(a.folder);
   checkOutputs(files, a, loaded);
-  job.settings.noiseLimit.reset();
-  study.seed = job.settings.seed;
+  description.settings.noiseLimit.reset();
+  study.seed = description.settings.seed;
   study.identity = identityOf(loaded);
 
-  const RenderStore store(study, {job.settings.width, job.settings.height});
+  const RenderStore store(study, {description.settings.width, description.settings.height});
   showStored(study, store);
   study.referenceSamples = planReferenceSamples(a, study.shownBudgets);
-  StudyRun run(study, store, loaded, job.settings);
+  StudyRun run(study, store, loaded, description.settings);
   checkReference(run, study);
   Messages ofReference;
   if (!study.referenceFile.empty())
-    loadReference(study, store, job.settings.width, job.settings.height, &ofReference);
+    loadReference(study, store, description.settings.width, description.settings.height,
+                  &ofReference);
   print(ofRows, a.scene.quiet());
   print(ofReference, a.scene.quiet());
   print(loaded.messages, a.scene.quiet());
@@ -232,11 +233,13 @@ void compare(const CompareArguments& a) {
                     a.scene.scene));
 
   const auto results = [&] {
-    const RenderSettings& s = job.settings;
+    const RenderSettings& s = description.settings;
     return studyResults(study, store, loadReference(study, store, s.width, s.height));
   };
-  ReportScene about{
-      fs::path(a.scene.scene).filename().string(), &loaded.probe, job.output.display.exposure, {}};
+  ReportScene about{fs::path(a.scene.scene).filename().string(),
+                    &loaded.probe,
+                    description.output.display.exposure,
+                    {}};
   for (const std::string& name : study.strategies)
     about.directions.emplace_back(name, sampledDirections(run.strategy(name)));
   const auto write = [&](const StudyResults& r) {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "session/job_report.h"
+#include "session/render_report.h"
 
 namespace chromeball {
 
@@ -34,18 +34,18 @@ ImageRender::ImageRender(const LoadedScene& loaded, bool showsProgress,
           },
           viewers_) {}
 
-JobResult ImageRender::run(const PreparedScene& prepared,
-                           const std::function<double(double)>& fractionOfAll,
-                           const std::atomic<bool>& stop) {
-  const RenderDescription& job = loaded_.description;
-  for (Viewer* viewer : viewers_) viewer->begin(job.output.files.front());
+FinishedRender ImageRender::run(const PreparedScene& prepared,
+                                const std::function<double(double)>& fractionOfAll,
+                                const std::atomic<bool>& stop) {
+  const RenderDescription& description = loaded_.description;
+  for (Viewer* viewer : viewers_) viewer->begin(description.output.files.front());
   const auto progress = [&](double fraction) {
     bar_.update(fractionOfAll(fraction));
     for (Viewer* viewer : viewers_) viewer->update(fraction);
   };
-  const bool isReference = job.composite && job.composite->passes == Passes::Two;
-  JobResult result =
-      renderJob(loaded_, prepared, progress, stop, isReference ? nullptr : &control_);
+  const bool isReference = description.composite && description.composite->passes == Passes::Two;
+  FinishedRender result =
+      renderLoaded(loaded_, prepared, progress, stop, isReference ? nullptr : &control_);
   result.image.metadata = imageMetadata(loaded_, result, result.render, result.seconds);
   const Messages& more = control_.messages();
   result.messages.insert(result.messages.end(), more.begin(), more.end());

@@ -29,15 +29,16 @@ class ImageRender {
 
   // The image, ready to be written except for its state. Ends early if `stop` is set.
   // `fractionOfAll`: maps the fraction done of this image to the fraction of all work.
-  JobResult run(const PreparedScene& prepared, const std::function<double(double)>& fractionOfAll,
-                const std::atomic<bool>& stop);
+  FinishedRender run(const PreparedScene& prepared,
+                     const std::function<double(double)>& fractionOfAll,
+                     const std::atomic<bool>& stop);
 
  private:
   const LoadedScene& loaded_;
   std::vector<Viewer*> viewers_;
   ProgressBar bar_;
   PassReport report_;
-  JobControl control_;
+  CheckpointControl control_;
 };
 
 }  // namespace chromeball

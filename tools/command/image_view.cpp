@@ -11,7 +11,7 @@
 #include "input_image.h"
 #include "layer_view.h"
 #include "messages.h"
-#include "session/job_description.h"
+#include "session/image_header.h"
 
 namespace chromeball {
 namespace {

@@ -15,8 +15,8 @@
 #include "parts/merge.h"
 #include "progress_bar.h"
 #include "render_hints.h"
-#include "session/job_description.h"
-#include "session/job_report.h"
+#include "session/image_header.h"
+#include "session/render_report.h"
 
 namespace chromeball {
 namespace {

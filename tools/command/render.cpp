@@ -21,9 +21,9 @@
 #include "render_hints.h"
 #include "scene_options.h"
 #include "session/develop_image.h"
-#include "session/job_description.h"
-#include "session/job_report.h"
-#include "session/run_job.h"
+#include "session/image_header.h"
+#include "session/render_loaded.h"
+#include "session/render_report.h"
 #include "thread_limit.h"
 #include "viewers/viewers.h"
 
@@ -49,15 +49,15 @@ std::string guidedInWords(const RenderResult& render) {
                                                : "light samples and bounces");
 }
 
-void printOutcome(const RenderDescription& job, const JobResult& result, bool quiet) {
+void printOutcome(const RenderDescription& description, const FinishedRender& result, bool quiet) {
   const RenderResult& render = result.render;
   if (render.interrupted && render.samples == 0)
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; saved as {}",
-                                  fmt::join(job.output.files, ", ")));
-  const auto& checkpoint = job.run.checkpoint;
+                                  fmt::join(description.output.files, ", ")));
+  const auto& checkpoint = description.run.checkpoint;
   if (render.interrupted)
     throw Interrupted(fmt::format("interrupted; the image so far is saved{}{}",
-                                  job.settings.denoise ? ", not denoised" : "",
+                                  description.settings.denoise ? ", not denoised" : "",
                                   checkpoint && std::filesystem::exists(*checkpoint)
                                       ? fmt::format("; --resume goes on from {}", *checkpoint)
                                       : ""));
@@ -65,16 +65,16 @@ void printOutcome(const RenderDescription& job, const JobResult& result, bool qu
     fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samples,
                guidedInWords(render), result.seconds, inWords(result.noise),
                inWords(result.denoised),
-               printable(fmt::format("{}", fmt::join(job.output.files, ", "))));
+               printable(fmt::format("{}", fmt::join(description.output.files, ", "))));
 }
 
-void writeImages(const RenderDescription& job, const LoadedScene& loaded, const JobResult& result,
-                 PhaseSeconds seconds) {
+void writeImages(const RenderDescription& description, const LoadedScene& loaded,
+                 const FinishedRender& result, PhaseSeconds seconds) {
   Stopwatch watch;
-  print(writeOutputs(job, result.image), false);
+  print(writeOutputs(description, result.image), false);
   seconds.render = result.seconds;
   seconds.write = watch.lap();
-  if (const auto& stats = job.output.stats)
+  if (const auto& stats = description.output.stats)
     writeText(*stats, jsonText(statistics(loaded, result, seconds), 2) + "\n");
 }
 
@@ -86,29 +86,29 @@ std::optional<RenderPart> identified(const LoadedScene& loaded) {
 
 // Adds the state of a part to its image. To be called after the render, which solves the
 // reflectance of a local scene.
-void addState(const LoadedScene& loaded, std::optional<RenderPart>& part, JobResult& result) {
+void addState(const LoadedScene& loaded, std::optional<RenderPart>& part, FinishedRender& result) {
   if (!part) return;
   part->plan = finishPlan(loaded, result.render);
   result.image.state = partState(*part, result.render);
 }
 
 void renderStill(const SceneFile& scene, const SceneOptions& options) {
-  RenderDescription job = planJob(scene, options.settings);
-  const Messages outputMessages = checkOutputs(job);
+  RenderDescription description = planRender(scene, options.settings);
+  const Messages outputMessages = checkOutputs(description);
   const ThreadLimit threads = threadLimit(options.settings);
   const Viewers viewers(options.settings, [] { interrupted = true; });
 
   Stopwatch watch;
   PhaseSeconds seconds;
-  const LoadedScene loaded = loadScene(job);
-  job = loaded.description;
+  const LoadedScene loaded = loadScene(description);
+  description = loaded.description;
   seconds.load = watch.lap();
   const PreparedScene prepared = prepareScene(loaded);
   seconds.build = prepared.buildSeconds;
   seconds.prepare = prepared.prepareSeconds;
-  prepareOutputs(job, loaded.files);
+  prepareOutputs(description, loaded.files);
   std::optional<RenderPart> part = identified(loaded);
-  JobResult result = [&] {
+  FinishedRender result = [&] {
     ImageRender render(loaded, options.showsProgress(), viewers.all());
     print(viewers.messages(), options.quiet());  // after the last error that input can cause
     print(outputMessages, options.quiet());
@@ -118,11 +118,11 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
         prepared, [](double fraction) { return fraction; }, interrupted);
   }();
   addState(loaded, part, result);
-  if (result.render.samples == 0) nameAsPartial(job.output.files);
-  writeImages(job, loaded, result, seconds);
+  if (result.render.samples == 0) nameAsPartial(description.output.files);
+  writeImages(description, loaded, result, seconds);
 
   print(resultMessages(loaded, prepared, result), options.quiet());
-  printOutcome(job, result, options.quiet());
+  printOutcome(description, result, options.quiet());
 }
 
 // Whether all files of a frame exist.
@@ -173,20 +173,20 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
   size_t kept = 0;
   for (size_t i = 0; i < frames.size() && !interrupted; ++i) {
     const SequenceFrame frame = sequence.frame(frames[i]);
-    RenderDescription job = planJob(frame.scene, frame.given);
-    const Messages outputMessages = checkOutputs(job);
+    RenderDescription description = planRender(frame.scene, frame.given);
+    const Messages outputMessages = checkOutputs(description);
     if (!overwrites && isFinished(frame)) {
       ++kept;
       continue;
     }
     Stopwatch watch;
-    scene.show(job);
-    job = scene.loaded().description;
+    scene.show(description);
+    description = scene.loaded().description;
     const PhaseSeconds seconds{.load = watch.lap()};
-    prepareOutputs(job, scene.loaded().files);
+    prepareOutputs(description, scene.loaded().files);
     std::optional<RenderPart> part = identified(scene.loaded());
     const double before = double(i - kept), count = double(frames.size() - kept);
-    JobResult result = [&] {
+    FinishedRender result = [&] {
       ImageRender render(scene.loaded(), options.showsProgress(), viewers.all());
       printNew(viewers.messages(), printed, options.quiet());
       printNew(sequence.messages(), printed, options.quiet());
@@ -198,10 +198,10 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     }();
     if (result.render.interrupted) break;  // an image that exists is a finished one
     addState(scene.loaded(), part, result);
-    writeImages(job, scene.loaded(), result, seconds);
+    writeImages(description, scene.loaded(), result, seconds);
     printNew(resultMessages(scene.loaded(), scene.prepared(), result), printed, options.quiet());
     if (!options.quiet()) fmt::print("frame {}: ", frame.number);
-    printOutcome(job, result, options.quiet());
+    printOutcome(description, result, options.quiet());
   }
   if (interrupted)
     throw Interrupted("interrupted; the same command goes on with the frames that are missing");

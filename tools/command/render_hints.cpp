@@ -14,8 +14,8 @@ namespace {
 
 // The exposure to try if most pixels of a .png are clipped.
 std::optional<std::string> whyWhite(const LoadedScene& loaded, const RenderResult& result) {
-  const RenderDescription& job = loaded.description;
-  const bool hasPng = std::any_of(job.output.files.begin(), job.output.files.end(),
+  const RenderDescription& description = loaded.description;
+  const bool hasPng = std::any_of(description.output.files.begin(), description.output.files.end(),
                                   [](const auto& path) { return lowerExtension(path) == ".png"; });
   if (!hasPng) return std::nullopt;
   const Image mean = result.film.mean();
@@ -24,7 +24,7 @@ std::optional<std::string> whyWhite(const LoadedScene& loaded, const RenderResul
   for (int y = 0; y < mean.height; ++y)
     for (int x = 0; x < mean.width; ++x) {
       brightest.push_back(maxComponent(mean.rgb(x, y)));
-      clipped += maxComponent(display(job.output.display, mean.rgb(x, y))) >= 1;
+      clipped += maxComponent(display(description.output.display, mean.rgb(x, y))) >= 1;
     }
   if (2 * clipped <= brightest.size()) return std::nullopt;
   const auto high = brightest.begin() + std::ptrdiff_t(brightest.size() * 9 / 10);
@@ -81,13 +81,13 @@ void addExcluded(const RenderResult& result, Messages& messages) {
 }
 
 Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,
-                        const JobResult& result) {
-  const RenderDescription& job = loaded.description;
+                        const FinishedRender& result) {
+  const RenderDescription& description = loaded.description;
   Messages messages;
   addExcluded(result.render, messages);
-  addDepthCuts(job.settings, result.render.depthCut, messages);
+  addDepthCuts(description.settings, result.render.depthCut, messages);
   messages.insert(messages.end(), result.messages.begin(), result.messages.end());
-  if (job.composite || job.settings.isPart()) return messages;
+  if (description.composite || description.settings.isPart()) return messages;
   if (!result.render.interrupted)
     if (const auto why = whyBlack(loaded, prepared.world->accel, result.render))
       messages.push_back({Message::Kind::Warning, *why});

@@ -2,14 +2,14 @@
 // Messages to the user about a rendered image, with suggestions of options.
 #pragma once
 
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 
 namespace chromeball {
 
 // The messages of `result`, and messages about excluded samples, clamped light, light beyond the
 // depth limits, and images that are nearly black or mostly clipped.
 Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,
-                        const JobResult& result);
+                        const FinishedRender& result);
 
 // The option that sets a limit of depth, as it is typed: "--max-depth 8", "--integrator direct".
 std::string limitGiven(DepthLimit limit, const RenderSettings& settings);

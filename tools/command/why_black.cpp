@@ -188,7 +188,7 @@ std::string noLightWith(const std::vector<std::string>& settings) {
 
 std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
                                     const RenderResult& result) {
-  const RenderDescription& job = loaded.description;
+  const RenderDescription& description = loaded.description;
   const Image mean = result.film.mean();
   constexpr float kDark = 1e-4f;  // of the probe's mean
   constexpr double kMax = 0.8, kNearlyAll = 0.95;
@@ -200,10 +200,11 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
     return finer.surfaces == 0 ? std::optional(noneInView(loaded.scene, finer)) : std::nullopt;
   }
   const double black = double(seen.black.size()) / seen.surfaces;
-  if (job.settings.maxDepth == 0 || black < kMax) return std::nullopt;  // at 0, only emitters shine
+  if (description.settings.maxDepth == 0 || black < kMax)
+    return std::nullopt;  // at 0, only emitters shine
   const std::string what = fmt::format("{:.0f}% of the visible surfaces are black: ", 100 * black);
-  if (job.probe.scale == glm::dvec3(0)) return what + "--probe-scale 0 turns the probe off";
-  if (const auto limits = limitsOf(job.settings, result); !limits.empty())
+  if (description.probe.scale == glm::dvec3(0)) return what + "--probe-scale 0 turns the probe off";
+  if (const auto limits = limitsOf(description.settings, result); !limits.empty())
     return what + noLightWith(limits);
   const std::vector<Target> lights = lightsOf(loaded);
   const auto behindWalls = std::ranges::count_if(
@@ -217,7 +218,7 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
   if (black < kNearlyAll) return std::nullopt;
   if (const auto removed = removedLight(loaded); !removed.empty())
     return what + noLightWith(removed);
-  if (lights.empty() && job.probe.file)
+  if (lights.empty() && description.probe.file)
     return what + "the probe is black; take another, or add lamps with [[light]] in a scene file";
   return what + "no light reaches them; add lamps with [[light]] in a scene file";
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "probe/probe.h"
-#include "session/job_report.h"
+#include "session/render_report.h"
 #include "study/results.h"
 
 namespace chromeball {

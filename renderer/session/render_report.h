@@ -9,37 +9,38 @@
 
 #include "base/message.h"
 #include "description/render_description.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 
 namespace chromeball {
 
-// Seconds that the phases of a job take.
+// Seconds that the phases of a description take.
 struct PhaseSeconds {
   double load = 0, build = 0, prepare = 0, render = 0, write = 0;
 };
 
-// The statistics of `chromeball render --stats`: the job (job_description.h), samples, rays,
-// seconds, noise, memory. Numbers that are unknown are null.
-nlohmann::json statistics(const LoadedScene& loaded, const JobResult& result,
+// The statistics of `chromeball render --stats`: the description (job_description.h), samples,
+// rays, seconds, noise, memory. Numbers that are unknown are null.
+nlohmann::json statistics(const LoadedScene& loaded, const FinishedRender& result,
                           const PhaseSeconds& seconds);
 
-// The attributes of the EXR file: the job, and the noise, samples, rays and seconds of the render.
+// The attributes of the EXR file: the description, and the noise, samples, rays and seconds of the
+// render.
 Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
                        const RenderResult& render, double seconds);
 
 // The attributes that depend on the samples.
 Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render);
 
-// The output files of a job: images and statistics.
+// The output files of a description: images and statistics.
 
 // Checks, before rendering, that the outputs can be written. Returns warnings about settings that
 // have no effect. Throws InputError or RunError.
-Messages checkOutputs(const RenderDescription& job);
+Messages checkOutputs(const RenderDescription& description);
 
 // Call when all files are read (`inputs`; the scene file itself is added) and no other input error
 // can occur. Throws InputError if an output would overwrite an input, and makes the folders that
 // the scene file names for its images.
-void prepareOutputs(const RenderDescription& job, std::vector<std::string> inputs);
+void prepareOutputs(const RenderDescription& description, std::vector<std::string> inputs);
 
 // The machine, the program and the date of a measurement.
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "session/job_description.h"
+#include "session/image_header.h"
 
 #include <fmt/format.h>
 
@@ -86,14 +86,14 @@ enum class FileContents { All, Others };
 
 // The description, with contents of files instead of their names, and without limits.
 Json describeContents(const LoadedScene& loaded, FileContents which) {
-  const RenderDescription& job = loaded.description;
-  Json identity = describeJob(loaded);
+  Json identity = describeLoaded(loaded);
   for (const char* name : kPaths) identity.erase(name);
   for (const char* name : kLimits) identity.erase(name);
   const bool all = which == FileContents::All;
-  if (all && !job.path.empty()) identity["contents of scene"] = fingerprint(job.path);
+  if (all && !loaded.description.path.empty())
+    identity["contents of scene"] = fingerprint(loaded.description.path);
   for (const std::string& file : loaded.files) {
-    if (!all && file == job.camera.file) continue;
+    if (!all && file == loaded.description.camera.file) continue;
     const std::string row = "contents of " + std::filesystem::path(file).filename().string();
     identity[row] = hash(identity.value(row, uint64_t(0)), fingerprint(file));
   }
@@ -117,15 +117,14 @@ Metadata::mapped_type numberAttribute(double number) {
 
 }  // namespace
 
-Json describeJob(const LoadedScene& loaded) {
-  const RenderDescription& job = loaded.description;
-  Json d = describe(job);
-  if (job.probe.file) d["probe-found"] = mappingName(loaded.loadedProbe.mapping);
+Json describeLoaded(const LoadedScene& loaded) {
+  Json d = describe(loaded.description);
+  if (loaded.description.probe.file) d["probe-found"] = mappingName(loaded.loadedProbe.mapping);
   if (const auto& found = loaded.plateScale)
     d["probe-scale"] = fmt::format("{},{},{}", found->scale.x, found->scale.y, found->scale.z);
   if (!loaded.camera.name.empty()) d["camera"] = loaded.camera.name;
   d["files"] = loaded.files;
-  describeCamera(job.settings, loaded, d);
+  describeCamera(loaded.description.settings, loaded, d);
   return d;
 }
 
@@ -154,11 +153,11 @@ std::string identityOf(const LoadedScene& loaded) {
 }
 
 std::string renderIdentity(const LoadedScene& loaded) {
-  const RenderDescription& job = loaded.description;
   Json identity = describeContents(loaded, FileContents::All);
-  identity["layers"] = layerNames(job);
-  if (job.settings.shard.count > 1)  // which samples are a shard's depends on the number of all
-    identity["samples"] = job.settings.samplesOfAll();
+  identity["layers"] = layerNames(loaded.description);
+  if (loaded.description.settings.shard.count >
+      1)  // which samples are a shard's depends on the number of all
+    identity["samples"] = loaded.description.settings.samplesOfAll();
   return jsonText(identity);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders a job with a loaded scene: builds the acceleration structure and the lighting strategy,
-// and calls the integrators.
+// Renders a description with a loaded scene: builds the acceleration structure and the lighting
+// strategy, and calls the integrators.
 #pragma once
 
 #include <atomic>
@@ -23,14 +23,14 @@ struct PreparedScene {
 };
 
 // Throws InputError for a strategy that is unknown or does not suit the probe, and for light groups
-// that take more memory than the job may. `earlier`: made from the same LoadedScene before its
-// contents changed; what did not change is taken from it. Null: none.
+// that take more memory than the description may. `earlier`: made from the same LoadedScene before
+// its contents changed; what did not change is taken from it. Null: none.
 PreparedScene prepareScene(const LoadedScene& loaded, const PreparedScene* earlier = nullptr);
 
-// The plan for making the image from the job's samples.
+// The plan for making the image from the description's samples.
 FinishPlan finishPlan(const LoadedScene& loaded, const RenderResult& result);
 
-struct JobResult : FinishedImage {
+struct FinishedRender : FinishedImage {
   RenderResult render;
   Messages messages = {};
   double seconds = 0;  // of rendering
@@ -38,15 +38,15 @@ struct JobResult : FinishedImage {
   const Image& color() const { return image.layers.front().image; }  // linear RGB or RGBA
 };
 
-// Renders until the job's limit of samples, time or noise is reached, or `stop` is set. In the
-// latter case render.interrupted is true, and the image contains the samples so far. `control`
+// Renders until the description's limit of samples, time or noise is reached, or `stop` is set. In
+// the latter case render.interrupted is true, and the image contains the samples so far. `control`
 // (render/render_state.h) may be null; not for composites of two passes.
-JobResult renderJob(const LoadedScene& loaded, const PreparedScene& prepared,
-                    const Progress& progress, const std::atomic<bool>& stop,
-                    RenderControl* control = nullptr);
+FinishedRender renderLoaded(const LoadedScene& loaded, const PreparedScene& prepared,
+                            const Progress& progress, const std::atomic<bool>& stop,
+                            RenderControl* control = nullptr);
 
 // The same without progress reports and interruption.
-JobResult renderJob(const LoadedScene& loaded);
+FinishedRender renderLoaded(const LoadedScene& loaded);
 
 // The scenes of successive frames: what does not change is loaded and built once.
 
@@ -57,13 +57,13 @@ class FrameScene {
   // tables of the probe made for the first; meshes, and the acceleration structures over them, are
   // made again where they have moved or changed, the probe where it has turned, and everything for
   // composites. Throws InputError.
-  void show(const RenderDescription& job);
+  void show(const RenderDescription& description);
 
   const LoadedScene& loaded() const { return *loaded_; }
   const PreparedScene& prepared() const { return prepared_; }
 
  private:
-  void load(const RenderDescription& job);
+  void load(const RenderDescription& description);
 
   ModelCache models_;
   std::unique_ptr<LoadedScene> loaded_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "session/job_report.h"
+#include "session/render_report.h"
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
@@ -18,7 +18,7 @@
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "lighting/strategy.h"
-#include "session/job_description.h"
+#include "session/image_header.h"
 #include "session/memory_estimate.h"
 
 namespace chromeball {
@@ -79,17 +79,18 @@ json describe(const RenderResult& result) {
 
 }  // namespace
 
-json statistics(const LoadedScene& loaded, const JobResult& result, const PhaseSeconds& seconds) {
-  const RenderDescription& job = loaded.description;
+json statistics(const LoadedScene& loaded, const FinishedRender& result,
+                const PhaseSeconds& seconds) {
+  const RenderDescription& description = loaded.description;
   json j = {
       {"version", CHROMEBALL_VERSION},
       {"command", commandLine()},
-      {"job", describeJob(loaded)},
-      {"scene", job.path},
-      {"strategy", resolveStrategy(job.lighting.strategy)},
-      {"seed", job.settings.seed},
-      {"max_depth", job.settings.maxDepth},
-      {"max_transmission_depth", job.settings.maxTransmissionDepth},
+      {"job", describeLoaded(loaded)},
+      {"scene", description.path},
+      {"strategy", resolveStrategy(description.lighting.strategy)},
+      {"seed", description.settings.seed},
+      {"max_depth", description.settings.maxDepth},
+      {"max_transmission_depth", description.settings.maxTransmissionDepth},
       {"threads", threadCount()},
       {"seconds",
        {{"load", seconds.load},
@@ -108,7 +109,7 @@ json statistics(const LoadedScene& loaded, const JobResult& result, const PhaseS
       {"memory", describe(estimateMemory(loaded))},
   };
   j.update(describe(result.render));
-  j["depth_cut"] = describe(result.render.depthCut, job.settings);
+  j["depth_cut"] = describe(result.render.depthCut, description.settings);
   if (const auto& d = result.denoised)
     j["denoised"] = {{"noise", d->noise}, {"seconds", d->seconds}};
   if (result.composite) j.update(describe(*result.composite));
@@ -136,61 +137,64 @@ Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& rende
 
 Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
                        const RenderResult& render, double seconds) {
-  const RenderDescription& job = loaded.description;
-  Metadata metadata = toMetadata(describeJob(loaded));
+  const RenderDescription& description = loaded.description;
+  Metadata metadata = toMetadata(describeLoaded(loaded));
   metadata["Software"] = "chromeball " CHROMEBALL_VERSION;
   metadata["command"] = commandLine();
   metadata["seconds"] = float(seconds);
   metadata.merge(sampleMetadata(finished, render));
-  if (job.settings.clamp) metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
-  if (const Shard& shard = job.settings.shard; shard.samplesOfAll > 0)
+  if (description.settings.clamp)
+    metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
+  if (const Shard& shard = description.settings.shard; shard.samplesOfAll > 0)
     metadata["samplesOfAll"] = int(shard.samplesOfAll);  // up to kMaxSamples
   metadata.merge(idManifests(finished.image, loaded.scene));
   return metadata;
 }
 
-Messages checkOutputs(const RenderDescription& job) {
-  const std::vector<std::string>& files = job.output.files;
+Messages checkOutputs(const RenderDescription& description) {
+  const std::vector<std::string>& files = description.output.files;
   if (files.empty())
-    throw InputError(fmt::format("{}: no output file is named", job.path),
+    throw InputError(fmt::format("{}: no output file is named", description.path),
                      Remedy{"output.file", {}});
   for (const std::string& output : files)
-    job.output.makesFolders ? checkSceneOutput(output) : checkWritable(output);
-  if (job.output.stats) checkOutputFile(*job.output.stats, {".json"});
-  if (job.run.checkpoint) checkOutputFile(*job.run.checkpoint, {".exr"});
+    description.output.makesFolders ? checkSceneOutput(output) : checkWritable(output);
+  if (description.output.stats) checkOutputFile(*description.output.stats, {".json"});
+  if (description.run.checkpoint) checkOutputFile(*description.run.checkpoint, {".exr"});
 
   const auto has = [&](std::string_view extension) {
     return std::any_of(files.begin(), files.end(),
                        [&](const auto& output) { return lowerExtension(output) == extension; });
   };
-  if (job.settings.isPart() && job.origins.has("shard") && !has(".exr"))
+  if (description.settings.isPart() && description.origins.has("shard") && !has(".exr"))
     throwInput("{}: needs an .exr as output, which `chromeball merge` reads",
-               job.origins.of("shard"));
+               description.origins.of("shard"));
   Messages messages;
   const auto warn = [&](std::string_view setting, const std::string& why) {
-    if (job.origins.has(setting))
-      messages.push_back({Message::Kind::Warning,
-                          fmt::format("{} has no effect: {}", namedOrigin(job, setting), why)});
+    if (description.origins.has(setting))
+      messages.push_back(
+          {Message::Kind::Warning,
+           fmt::format("{} has no effect: {}", namedOrigin(description, setting), why)});
   };
   for (const char* name : {"tonemap", "exposure", "output.develop"})
     if (!has(".png")) warn(name, fmt::format("it is for .png; {} holds radiance", files.front()));
-  const bool isForLens =
-      job.output.develop.lens && job.output.layers == std::vector<std::string>{"depth"};
+  const bool isForLens = description.output.develop.lens &&
+                         description.output.layers == std::vector<std::string>{"depth"};
   if (!has(".exr") && !isForLens) warn("output.aovs", "only an .exr holds layers");
-  if (const std::string strategy = resolveStrategy(job.lighting.strategy);
+  if (const std::string strategy = resolveStrategy(description.lighting.strategy);
       !strategy.starts_with("suns"))
     warn("lighting.sun_angle", fmt::format("the strategy is {}; only suns has discs", strategy));
   return messages;
 }
 
-void prepareOutputs(const RenderDescription& job, std::vector<std::string> inputs) {
-  inputs.push_back(job.path);
-  std::vector<std::string> outputs = job.output.files;
-  for (const auto* file : {&job.output.stats, &job.run.checkpoint, &job.run.cache})
+void prepareOutputs(const RenderDescription& description, std::vector<std::string> inputs) {
+  inputs.push_back(description.path);
+  std::vector<std::string> outputs = description.output.files;
+  for (const auto* file :
+       {&description.output.stats, &description.run.checkpoint, &description.run.cache})
     if (*file) outputs.push_back(**file);
   checkDistinct(outputs, inputs);
-  if (job.output.makesFolders)
-    for (const std::string& output : job.output.files) makeFolder(output);
+  if (description.output.makesFolders)
+    for (const std::string& output : description.output.files) makeFolder(output);
 }
 
 namespace {

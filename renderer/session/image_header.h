@@ -26,7 +26,7 @@ namespace chromeball {
 //                             corner and (1, 1) at the bottom right
 // The number of samples is left out: if a limit determined it, the limit reproduces the image, but
 // the number does not, since the passes differ.
-nlohmann::ordered_json describeJob(const LoadedScene& loaded);
+nlohmann::ordered_json describeLoaded(const LoadedScene& loaded);
 
 // The same as attributes of an EXR file, without loss: numbers as floats, or as doubles where a
 // float does not hold them; matrices as such, other lists as JSON.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A job rendered with the library, without the command.
+// A description rendered with the library, without the command.
 #include "base/json.h"
 #include "base/json_text.h"
 #include "front/plan_render.h"
-#include "session/run_job.h"
+#include "session/render_loaded.h"
 
 #include <gtest/gtest.h>
 
@@ -20,13 +20,13 @@
 #include "probe/synth.h"
 #include "run_command.h"
 #include "scene/builder/scene_builder.h"
-#include "session/job_description.h"
+#include "session/image_header.h"
 #include "small_model.h"
 
-namespace chromeball::job_test {
+namespace chromeball::description_test {
 namespace {
 
-TEST(Job, RendersASceneFileToAnImageAndPrintsNothing) {
+TEST(Description, RendersASceneFileToAnImageAndPrintsNothing) {
   const TemporaryFolder folder;
   writeSmallModel(folder / "model.gltf");
   writeImage(folder / "probe.exr", constantProbe({8, 4}, Rgb(0.5f, 1, 2)));
@@ -35,9 +35,9 @@ TEST(Job, RendersASceneFileToAnImageAndPrintsNothing) {
                                           "[output]\naovs = ['depth']\n";
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  RenderDescription job = planJob(openScene(folder / "scene.toml"));
-  const LoadedScene loaded = loadScene(job);
-  const JobResult result = renderJob(loaded);
+  RenderDescription description = planRender(openScene(folder / "scene.toml"));
+  const LoadedScene loaded = loadScene(description);
+  const FinishedRender result = renderLoaded(loaded);
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 
@@ -70,14 +70,14 @@ void writeRichScene(const TemporaryFolder& folder) {
 
 using Change = std::function<void(RenderDescription&)>;
 
-// Whether the change of a job in memory is in the header of an image and in the identity of its
-// checkpoints.
+// Whether the change of a description in memory is in the header of an image and in the identity of
+// its checkpoints.
 void expectFound(const std::string& scene, const char* name, const Change& change) {
   const auto describe = [&](const Change& prepare) {
-    RenderDescription job = planJob(openScene(scene));
-    prepare(job);
-    const LoadedScene loaded = loadScene(job);
-    return std::pair(describeJob(loaded), renderIdentity(loaded));
+    RenderDescription description = planRender(openScene(scene));
+    prepare(description);
+    const LoadedScene loaded = loadScene(description);
+    return std::pair(describeLoaded(loaded), renderIdentity(loaded));
   };
   const auto [header, identity] = describe([](RenderDescription&) {});
   const auto [changedHeader, changedIdentity] = describe(change);
@@ -85,7 +85,7 @@ void expectFound(const std::string& scene, const char* name, const Change& chang
   EXPECT_NE(identity, changedIdentity) << name;
 }
 
-TEST(Job, WhatAProgramChangesIsInHeaderAndIdentity) {
+TEST(Description, WhatAProgramChangesIsInHeaderAndIdentity) {
   const TemporaryFolder folder;
   writeRichScene(folder);
   const std::pair<const char*, Change> plain[] = {
@@ -175,12 +175,12 @@ TEST(Job, WhatAProgramChangesIsInHeaderAndIdentity) {
 
 // A setting in none of the lists of differences.cpp loads the scene again, which is right only for
 // what the scene is made of.
-TEST(Job, OnlyWhatTheSceneIsMadeOfLoadsItAgain) {
+TEST(Description, OnlyWhatTheSceneIsMadeOfLoadsItAgain) {
   const TemporaryFolder folder;
   writeRichScene(folder);
   std::set<std::string> loadAgain;
   for (const char* scene : {"plain.toml", "composite.toml"}) {
-    RenderDescription d = planJob(openScene(folder / scene));
+    RenderDescription d = planRender(openScene(folder / scene));
     d.settings.noiseLimit = 0.1, d.settings.timeLimit = 1;
     d.settings.cacheError = 0.2f, d.settings.clamp = 7, d.settings.regularize = true;
     d.camera.shutter = Shutter{0.25, 24, 4, 0};
@@ -201,7 +201,7 @@ TEST(Job, OnlyWhatTheSceneIsMadeOfLoadsItAgain) {
 
 // This holds also where the scene is far from the world's origin. Only the image's size may come
 // from the models.
-TEST(Job, LoadingChangesNothingOfTheDescription) {
+TEST(Description, LoadingChangesNothingOfTheDescription) {
   const TemporaryFolder folder;
   writeRichScene(folder);
   std::ofstream(folder / "far.toml")
@@ -210,9 +210,9 @@ TEST(Job, LoadingChangesNothingOfTheDescription) {
          "[surroundings]\nshape = 'box'\nmin = [999990, -9, -9]\nmax = [1000010, 9, 9]\ncapture = "
          "[1e6, 1, 1]\n";
   for (const char* scene : {"plain.toml", "composite.toml", "far.toml"}) {
-    RenderDescription job = planJob(openScene(folder / scene));
-    nlohmann::ordered_json before = describe(job);
-    nlohmann::ordered_json after = describe(loadScene(job).description);
+    RenderDescription description = planRender(openScene(folder / scene));
+    nlohmann::ordered_json before = describe(description);
+    nlohmann::ordered_json after = describe(loadScene(description).description);
     before.erase("size"), after.erase("size");
     EXPECT_EQ(jsonText(before), jsonText(after)) << scene;
   }
@@ -241,10 +241,10 @@ RenderDescription fromMemory(float height, float radiance) {
 
 // A white surface under a white probe vanishes; the bits are the same as for the same model in a
 // file.
-TEST(Job, RendersArrays) {
+TEST(Description, RendersArrays) {
   const RenderDescription description = fromMemory(0, 0.5f);
   const LoadedScene loaded = loadScene(description);
-  const JobResult result = renderJob(loaded);
+  const FinishedRender result = renderLoaded(loaded);
   ASSERT_EQ(result.color().width, 16);
   double sum = 0;
   for (const float texel : result.color().texels) sum += double(texel);
@@ -261,10 +261,10 @@ TEST(Job, RendersArrays) {
   RenderDescription file = description;
   file.scene.reset();
   file.models.push_back({w.save(), {}, {}});
-  EXPECT_EQ(renderJob(loadScene(file)).color().texels, result.color().texels);
+  EXPECT_EQ(renderLoaded(loadScene(file)).color().texels, result.color().texels);
 }
 
-TEST(Job, ArraysAreInHeaderAndIdentity) {
+TEST(Description, ArraysAreInHeaderAndIdentity) {
   const auto identity = [](const RenderDescription& d) { return renderIdentity(loadScene(d)); };
   const RenderDescription first = fromMemory(0, 0.5f);
   EXPECT_EQ(identity(first), identity(fromMemory(0, 0.5f)));
@@ -274,7 +274,7 @@ TEST(Job, ArraysAreInHeaderAndIdentity) {
   EXPECT_NE(describe(first), describe(fromMemory(0, 0.6f)));
 }
 
-TEST(Job, AProbeFromAnArrayIsChecked) {
+TEST(Description, AProbeFromAnArrayIsChecked) {
   RenderDescription description = fromMemory(0, 1);
   for (const float bad : {NAN, INFINITY, -1.0f}) {
     Image map = constantProbe({8, 4}, Rgb(1));
@@ -289,7 +289,7 @@ TEST(Job, AProbeFromAnArrayIsChecked) {
   }
 }
 
-TEST(Job, AnUnlitLocalSceneIsWarnedOf) {
+TEST(Description, AnUnlitLocalSceneIsWarnedOf) {
   for (const bool unlit : {false, true}) {
     Scene scene;
     SceneBuilder builder(scene);
@@ -314,12 +314,12 @@ TEST(Job, AnUnlitLocalSceneIsWarnedOf) {
   }
 }
 
-TEST(Job, ErrorsSuggestASetting) {
+TEST(Description, ErrorsSuggestASetting) {
   const TemporaryFolder folder;
   writeSmallModel(folder / "model.gltf");
   try {
-    RenderDescription job = planJob(openScene(folder / "model.gltf"));
-    loadScene(job);
+    RenderDescription description = planRender(openScene(folder / "model.gltf"));
+    loadScene(description);
     ADD_FAILURE() << "nothing lights the scene";
   } catch (const InputError& error) {
     ASSERT_TRUE(error.remedy);
@@ -329,4 +329,4 @@ TEST(Job, ErrorsSuggestASetting) {
 }
 
 }  // namespace
-}  // namespace chromeball::job_test
+}  // namespace chromeball::description_test
