@@ -156,7 +156,7 @@ class SlowLintSelection : public SlowScripts {
     if (shell("git --version").status != 0) GTEST_SKIP() << "no Git";
     write("renderer/probe/light.h", "");
     write("renderer/probe/light.cpp", "#include \"probe/light.h\"\n");
-    write("renderer/probe/synth.cpp", "# include  \"probe/light.h\"  // the sun\n");
+    write("renderer/probe/sky.cpp", "# include  \"probe/light.h\"  // the sun\n");
     write("renderer/scene/scene.h", "#include \"probe/light.h\"\n");
     write("renderer/scene/scene.cpp", "#include <vector>\n#include \"scene/scene.h\"\n");
     write("renderer/trace/ray.cpp", "#include \"probe/light.h\"\n");
@@ -189,7 +189,7 @@ TEST_F(SlowLintSelection, ChangedFilesAreCommittedOrNot) {
   write("tools/command/other.cpp", "int other;\n");
   write("renderer/probe/new.cpp", "int fresh;\n");
   write("tests/light_test.cpp", "int test;\n");
-  std::filesystem::remove(folder_ / "renderer/probe/synth.cpp");
+  std::filesystem::remove(folder_ / "renderer/probe/sky.cpp");
   EXPECT_EQ(selection(),
             "renderer/probe/new.cpp\nrenderer/trace/ray.cpp\ntools/command/other.cpp\n");
 }
