@@ -180,7 +180,7 @@ TEST(Sequence, OneOfTheFrames) {
 TEST(SlowSequence, SurvivesInterruption) {
   const Moving model;
   const TemporaryFolder out;
-  const std::string samples = "60000";
+  const std::string samples = "20000";
   Words frames =
       words(model.scene(),
             {"--frames", "0:1", "--checkpoint", out / "frame.#.checkpoint.exr", "--progress"},
