@@ -178,6 +178,16 @@ TEST(Capabilities, EverySettingInVainIsNamed) {
   }
 }
 
+// Bounces in glass are counted apart from those that a limit of one bounce leaves.
+TEST(Capabilities, RegularizationWidensGlassAlsoOfOneBounce) {
+  D d = plain();
+  d.settings.integrator = IntegratorKind::Direct;
+  d.settings.regularize = true;
+  d.origins.set("render.regularize", "scene.toml:7");
+  EXPECT_EQ(idleSettings(d, {.hasProbe = true}).size(), 1u);
+  EXPECT_TRUE(idleSettings(d, {.hasProbe = true, .hasBodies = true}).empty());
+}
+
 // A row says a thing once: no two rows have the same features, in either order.
 TEST(Capabilities, NoConflictIsThereTwice) {
   std::set<std::set<std::string_view>> pairs;

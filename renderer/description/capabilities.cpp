@@ -253,9 +253,10 @@ constexpr std::array kDependences = {
                [](const D& d, const SceneContents& c) {
                  return !d.straightGlassShadows || c.hasStraightGlass;
                }},
-    Dependence{"render.regularize", kManyBounces,
-               [](const D& d, const SceneContents&) {
-                 return !d.settings.regularize || bouncesOf(d) > 1;
+    Dependence{"render.regularize", "paths of more bounces, or bodies of glass",
+               [](const D& d, const SceneContents& c) {
+                 return !d.settings.regularize || bouncesOf(d) > 1 ||
+                        (c.hasBodies && followsPaths(d));  // whose bounces are counted apart
                }},
     Dependence{"render.irradiance_cache", kManyBounces,
                [](const D& d, const SceneContents&) {
@@ -274,6 +275,8 @@ constexpr std::array kDependences = {
                }},
     Dependence{"render.max_transmission_depth", "bodies of glass",
                [](const D&, const SceneContents& c) { return c.hasBodies; }},
+    Dependence{"render.max_transmission_depth", "an integrator that follows paths (path, direct)",
+               [](const D& d, const SceneContents&) { return followsPaths(d); }},
     Dependence{"render.single_sided", "single-sided surfaces",
                [](const D& d, const SceneContents& c) {
                  return d.singleSided == SingleSided::Camera || c.hidesBacks;

@@ -136,7 +136,6 @@ Row Row::representative() const {
   Row row = *this;
   if (usesEnvironment(integrator) && strategy != "suns") row.strategy = "importance";
   if (integrator == IntegratorKind::Direct) {
-    std::erase(row.modes, Mode::Regularize);
     if (diffuseDepth > 0) row.diffuseDepth.reset();
     if (specularDepth > 0) row.specularDepth.reset();
   }
