@@ -670,8 +670,9 @@ TEST(CommandRender, NamesSettingsWithoutEffect) {
   expectOne({"--max-transmission-depth", "3"}, "bodies of glass");
   expectOne({"--light-from", "rest"}, "suns");
   const std::string many = "paths of more bounces (--integrator path, --max-depth 2)";
-  expectOne({"--regularize", "--max-depth", "1"}, many);
-  expectOne({"--regularize", "--integrator", "direct"}, many);
+  expectOne({"--regularize", "--max-depth", "1"}, "paths of more bounces, or bodies of glass");
+  expectOne({"--regularize", "--integrator", "direct"},
+            "paths of more bounces, or bodies of glass");
   expectOne({"--regularize", "--max-depth", "2"}, "");
   expectOne({"--irradiance-cache", "0.3", "--max-depth", "1"}, many);
   expectOne({"--max-diffuse-depth", "8"}, "a higher limit of all bounces");
