@@ -215,8 +215,6 @@ bool followsPaths(const D& d) {
   return !d.settings.usesEnvironmentMaps() || d.settings.wantsAov(Aov::Irradiance);
 }
 int bouncesOf(const D& d) { return followsPaths(d) ? d.settings.path().maxDepth : 0; }
-constexpr std::string_view kManyBounces =
-    "paths of more bounces (--integrator path, --max-depth 2)";
 
 bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
 bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
@@ -258,7 +256,7 @@ constexpr std::array kDependences = {
                  return !d.settings.regularize || bouncesOf(d) > 1 ||
                         (c.hasBodies && followsPaths(d));  // whose bounces are counted apart
                }},
-    Dependence{"render.irradiance_cache", kManyBounces,
+    Dependence{"render.irradiance_cache", "paths of more bounces",
                [](const D& d, const SceneContents&) {
                  return !d.settings.cacheError || d.settings.usesCache();
                }},

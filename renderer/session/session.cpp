@@ -128,6 +128,7 @@ void Session::Implementation::discard() {
 
 void Session::Implementation::update(RenderDescription description) {
   discard();
+  isReady_ = false;
   take(std::move(description));
   liveImage_.reset();
   result_.reset();
@@ -266,7 +267,7 @@ void Session::Implementation::unload() {
 
 std::shared_ptr<const SessionImage> Session::Implementation::snapshot() {
   if (!isRunning_ && result_) return result_;
-  if (!isReady_ || !control_) return nullptr;
+  if (!isReady_) return nullptr;
   control_->watch();
   if (!liveImage_) liveImage_.emplace(*loaded_, *control_->live());
   return liveImage_->update(control_->noise());
