@@ -195,5 +195,33 @@ TEST(SessionCallbacks, LiveImageIsThatOfTheWhole) {
   }
 }
 
+// A composite is composed anew of all its pixels: its ratios depend on the mean of the image.
+TEST(SessionCallbacks, LiveImageOfACompositeIsThatOfTheWhole) {
+  for (const CompositeMode mode :
+       {CompositeMode::ShadowCatcher, CompositeMode::Difference, CompositeMode::Ratio}) {
+    RenderDescription d = ballDescription(32);
+    CompositeDescription& composite = d.composite.emplace();
+    composite.mode = mode;
+    composite.ground = CompositeDescription::GroundPlane::Always;
+    composite.layers = {"l_obj"};
+    if (mode != CompositeMode::ShadowCatcher) composite.plate = constantProbe({72, 40}, Rgb(0.4f));
+    const LoadedScene loaded = loadScene(d);
+    const PreparedScene prepared = prepareScene(loaded);
+    SelfWatching control;
+    LiveImage image(loaded, *control.live());
+    const std::atomic<bool> never = false;
+    int seen = 0;
+    const FinishedRender result = renderLoaded(
+        loaded, prepared, [&](double) { seen += image.update(0.5) != nullptr; }, never, &control);
+    EXPECT_GT(seen, 1);
+    const auto last = image.update(0.5);
+    ASSERT_TRUE(last);
+    ASSERT_EQ(last->image.layers.size(), result.image.layers.size());
+    for (size_t i = 0; i < last->image.layers.size(); ++i)
+      EXPECT_EQ(last->image.layers[i].image.texels, result.image.layers[i].image.texels)
+          << int(mode) << " " << last->image.layers[i].name;
+  }
+}
+
 }  // namespace
 }  // namespace chromeball::session_callbacks_test
