@@ -153,17 +153,23 @@ TEST(Capabilities, EverySettingInVainIsNamed) {
   inVain.singleSided = SingleSided::Off;
   inVain.lighting.from = LightFrom::Rest;
   inVain.settings.regularize = true;
+  inVain.settings.guiding = Guiding::On;
   inVain.settings.integrator = IntegratorKind::Direct;
   inVain.settings.cacheError = 0.1f;
   composite(inVain, CompositeMode::Difference);
   D mapped = plain();
   mapped.settings.integrator = IntegratorKind::EnvironmentMap;
-  const SceneContents nothing, all{true, true, true, true, true, true, true};
+  D flat = plain();  // no bounces
+  flat.settings.maxDepth = 0;
+  D delta = plain();
+  delta.lighting.strategy = "median-cut:8";
+  const SceneContents nothing, probe{.hasProbe = true},
+      all{true, true, true, true, true, true, true, true};
   for (const Dependence& d : dependences()) {
     const std::string name(d.setting);
     std::vector<std::vector<std::string>> told;
-    for (D* description : {&open, &inVain, &mapped})
-      for (const SceneContents& contents : {nothing, all}) {
+    for (D* description : {&open, &inVain, &mapped, &flat, &delta})
+      for (const SceneContents& contents : {nothing, probe, all}) {
         EXPECT_EQ(idleSettings(*description, contents), std::vector<std::string>{}) << name;
         description->origins.set(name, "scene.toml:7");
         told.push_back(idleSettings(*description, contents));

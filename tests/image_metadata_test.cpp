@@ -341,6 +341,27 @@ TEST(IccProfile, DamagedOnesAgreeWithNothing) {
       EXPECT_FALSE(isSrgb(iccProfile(iccParametric(kind, std::vector<double>(7, number)))));
 }
 
+// ICC.1, annex B.4. The tables of the second part say what the first does not.
+TEST_F(ImageProfile, PartsOfAJpegAreJoinedByTheirNumbers) {
+  const auto inParts = [](const Bytes& profile) {
+    const auto middle = profile.begin() + std::ptrdiff_t(profile.size() / 2);
+    const auto part = [](uint8_t number, const Bytes& data) {
+      return segment(0xe2, joined({text("ICC_PROFILE"), {0, number, 2}, data}));
+    };
+    return inserted(seed("a.jpg"), 2,
+                    joined({part(2, {middle, profile.end()}), part(1, {profile.begin(), middle})}));
+  };
+  EXPECT_FALSE(isSaid("srgb.jpg", inParts(iccProfile(iccCurve(srgbTable(1024))))));
+  EXPECT_TRUE(isSaid("gamma.jpg", inParts(iccProfile(iccCurve(std::vector<int>(1024, 9000))))));
+}
+
+// Photographs to be merged are not read as sRGB.
+TEST_F(ImageProfile, OfLevelsSaysNoCurve) {
+  const Messages messages = read("a.jpg", jpeg(kAdobe), IntegerTexels::Levels).messages;
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_NE(messages.front().text.find("read as those of Rec. 709"), std::string::npos);
+}
+
 // Cameras that are set to Adobe RGB state that in EXIF's ColorSpace, often only there.
 TEST(ImageMetadata, ColoursOfExifThatAreNotAppliedAreNamed) {
   constexpr uint16_t kColorSpace = 0xa001;

@@ -216,6 +216,16 @@ bool followsPaths(const D& d) {
 }
 int bouncesOf(const D& d) { return followsPaths(d) ? d.settings.path().maxDepth : 0; }
 
+// Whether light is sampled at surfaces: also at those of glass, whose bounces are counted apart.
+bool lightsSurfaces(const D& d, const SceneContents& c) {
+  return bouncesOf(d) > 0 || (followsPaths(d) && c.hasBodies);
+}
+// Whether samples of the BSDF find light that the strategy samples too.
+bool samplesAreas(const D& d) {
+  const std::string strategy = strategyOf(d);
+  return strategy == "suns" || (strategy != "bsdf" && !hasLights(strategy));
+}
+
 bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
 bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
 
@@ -239,14 +249,32 @@ constexpr std::array kDependences = {
                [](const D& d, const SceneContents&) {
                  return followsPaths(d) || strategyOf(d) == "suns";
                }},
+    Dependence{"lighting.strategy", "bounces",
+               [](const D& d, const SceneContents& c) {
+                 return lightsSurfaces(d, c) || !followsPaths(d) || !c.hasProbe ||
+                        d.lighting.showLights || strategyOf(d) == "suns";
+               }},
     Dependence{"lighting.mis", "an integrator that samples the probe (path, direct)",
                [](const D& d, const SceneContents&) { return followsPaths(d); }},
+    Dependence{"lighting.mis", "bounces",
+               [](const D& d, const SceneContents& c) {
+                 return lightsSurfaces(d, c) || !followsPaths(d);
+               }},
+    Dependence{"lighting.mis", "light that light samples and BSDF samples both find",
+               [](const D& d, const SceneContents& c) {
+                 return c.hasAreaLights || (c.hasProbe && samplesAreas(d)) || !lightsSurfaces(d, c);
+               }},
     Dependence{"lighting.from", "suns",
                [](const D& d, const SceneContents& c) {
                  return d.lighting.from == LightFrom::All || c.hasSuns;
                }},
     Dependence{"lighting.lights", "punctual lights of the models", hasModelLights},
     Dependence{"lighting.light_units", "punctual lights of the models", hasModelLights},
+    Dependence{"render.guide", "light of a probe",
+               [](const D& d, const SceneContents& c) {
+                 return d.settings.guiding != Guiding::On ||
+                        (c.hasProbe && d.lighting.from != LightFrom::Suns);
+               }},
     Dependence{"render.glass_shadows", "smooth bodies of glass",
                [](const D& d, const SceneContents& c) {
                  return !d.straightGlassShadows || c.hasStraightGlass;

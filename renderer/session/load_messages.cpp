@@ -47,17 +47,19 @@ SceneContents contentsOf(const LoadedScene& loaded) {
       return isSuch(scene.materials[size_t(i.material)]);
     });
   };
-  return {
-      .hasProbe = description.probe.file || description.probe.map || scene.environment,
-      .hasModelLights = loaded.hasModelLights,
-      .hasSuns =
-          loaded.loadedProbe.hasSuns || (description.scene && !description.scene->suns.empty()) ||
-          std::ranges::any_of(description.lamps, [](const Lamp& l) { return l.sun.has_value(); }),
-      .hasBodies = hasBodies(scene),
-      .hasStraightGlass = hasMaterial([](const Material& m) { return m.straightShadows; }),
-      .hidesBacks = hasMaterial([](const Material& m) { return !m.doubleSided; }),
-      .moves =
-          loaded.moves || (description.camera.shutter && description.camera.shutter->turn != 0)};
+  const bool hasSuns =
+      loaded.loadedProbe.hasSuns || (description.scene && !description.scene->suns.empty()) ||
+      std::ranges::any_of(description.lamps, [](const Lamp& l) { return l.sun.has_value(); });
+  return {.hasProbe = description.probe.file || description.probe.map || scene.environment,
+          .hasModelLights = loaded.hasModelLights,
+          .hasSuns = hasSuns,
+          .hasAreaLights =
+              hasSuns || loaded.sources || hasMaterial([](const Material& m) { return m.emits(); }),
+          .hasBodies = hasBodies(scene),
+          .hasStraightGlass = hasMaterial([](const Material& m) { return m.straightShadows; }),
+          .hidesBacks = hasMaterial([](const Material& m) { return !m.doubleSided; }),
+          .moves = loaded.moves ||
+                   (description.camera.shutter && description.camera.shutter->turn != 0)};
 }
 
 void addMemory(const LoadedScene& loaded, Collector& messages) {

@@ -50,11 +50,12 @@ size_t endOfSegment(std::span<const uint8_t> file, size_t at, uint8_t marker) {
   return std::min(at + size_t(std::max(file[at] << 8 | file[at + 1], 2)), file.size());
 }
 
-// The data of the first segment with this marker that begins with `name`, after it.
-std::span<const uint8_t> segmentOf(std::span<const uint8_t> file, uint8_t wanted,
-                                   std::string_view name) {
+// The data of each segment with this marker that begins with `name`, after it.
+std::vector<std::span<const uint8_t>> segmentsOf(std::span<const uint8_t> file, uint8_t wanted,
+                                                 std::string_view name) {
   constexpr size_t kLengthBytes = 2;
   const size_t dataAt = kLengthBytes + name.size();
+  std::vector<std::span<const uint8_t>> found;
   size_t at = 0;
   while (const uint8_t marker = nextMarker(file, at)) {
     if (marker == kSos || marker == kEoi) break;
@@ -63,9 +64,15 @@ std::span<const uint8_t> segmentOf(std::span<const uint8_t> file, uint8_t wanted
     const std::span<const uint8_t> segment = file.subspan(begin, at - begin);
     if (marker == wanted && segment.size() > dataAt &&
         std::equal(name.begin(), name.end(), segment.begin() + kLengthBytes))
-      return segment.subspan(dataAt);
+      found.push_back(segment.subspan(dataAt));
   }
-  return {};
+  return found;
+}
+
+std::span<const uint8_t> segmentOf(std::span<const uint8_t> file, uint8_t wanted,
+                                   std::string_view name) {
+  const auto found = segmentsOf(file, wanted, name);
+  return found.empty() ? std::span<const uint8_t>() : found.front();
 }
 
 }  // namespace
@@ -78,13 +85,19 @@ std::span<const uint8_t> jpegJfif(std::span<const uint8_t> file) {
   return segmentOf(file, kApp0, std::string_view("JFIF\0", 5));
 }
 
+// ICC.1, annex B.4: a part begins with its number, from 1, and the number of all parts.
 std::optional<std::vector<uint8_t>> jpegProfile(std::span<const uint8_t> file) {
   constexpr std::string_view kName("ICC_PROFILE\0", 12);
-  constexpr size_t kCountBytes = 2;  // the number of the part, and that of all parts
-  const std::span<const uint8_t> segment = segmentOf(file, kApp2, kName);
-  if (segment.empty()) return {};
-  return std::vector(segment.begin() + ptrdiff_t(std::min(kCountBytes, segment.size())),
-                     segment.end());
+  constexpr size_t kCountBytes = 2;
+  std::vector<std::span<const uint8_t>> parts = segmentsOf(file, kApp2, kName);
+  if (parts.empty()) return {};
+  std::ranges::stable_sort(parts, {}, [](std::span<const uint8_t> part) { return part.front(); });
+  std::vector<uint8_t> profile;
+  for (const std::span<const uint8_t> part : parts) {
+    const auto data = part.subspan(std::min(kCountBytes, part.size()));
+    profile.insert(profile.end(), data.begin(), data.end());
+  }
+  return profile;
 }
 
 // PNG (ISO/IEC 15948): a signature, then chunks of length, type, data and checksum.

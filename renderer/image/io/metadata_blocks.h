@@ -17,8 +17,7 @@ inline constexpr std::string_view kExifName("Exif\0\0", 6);
 std::span<const uint8_t> jpegExif(std::span<const uint8_t> file);
 std::span<const uint8_t> pngExif(std::span<const uint8_t> file);
 
-// The ICC profile; of a JPEG that has it in parts of 64 KB, the first. nullopt if there is none,
-// empty if a PNG's cannot be inflated to a megabyte.
+// The ICC profile. nullopt if there is none, empty if a PNG's cannot be inflated to a megabyte.
 std::optional<std::vector<uint8_t>> jpegProfile(std::span<const uint8_t> file);
 std::optional<std::vector<uint8_t>> pngProfile(std::span<const uint8_t> file);
 

@@ -135,12 +135,16 @@ void readColors(PngColor color, const std::optional<std::vector<uint8_t>>& profi
     file.transfer = color.transfer;
   }
   if (profile) {
-    warnOfProfile(*profile, color.decode, isSrgb ? "sRGB" : "its gAMA or cHRM states them", path,
-                  file);
+    const bool hasUnknownCurve = integers == IntegerTexels::Levels && !color.transfer;
+    warnOfProfile(*profile, color.decode,
+                  !isSrgb           ? "its gAMA or cHRM states them"
+                  : hasUnknownCurve ? "those of Rec. 709"
+                                    : "sRGB",
+                  path, file);
   } else if (exifStatesOtherColors(exif)) {
     file.messages.push_back({Message::Kind::Warning,
                              fmt::format("{}: its EXIF states other colours than those of sRGB, "
-                                         "such as Adobe RGB; they are read as sRGB",
+                                         "such as Adobe RGB; they are read as those of sRGB",
                                          path.string())});
   }
 }
@@ -210,9 +214,9 @@ void readTiffColors(std::span<const uint8_t> bytes, IntegerTexels integers, cons
   readColors({.primaries = primaries}, profile, bytes, integers, path, file);
   if (hasTransferTable(bytes))
     file.messages.push_back(
-        {Message::Kind::Warning, fmt::format("{}: has a TransferFunction that is not applied; its "
-                                             "texels are read as sRGB",
-                                             path.string())});
+        {Message::Kind::Warning,
+         fmt::format("{}: has a TransferFunction that is not applied{}", path.string(),
+                     integers == IntegerTexels::Levels ? "" : "; its texels are read as sRGB")});
 }
 
 // The file with its picture as the first image, which is the one that the module reads.
