@@ -32,8 +32,13 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-[[noreturn]] void throwFormattedInput(fmt::string_view format, fmt::format_args arguments);
-[[noreturn]] void throwFormattedRun(fmt::string_view format, fmt::format_args arguments);
+// Not templates, to keep what each call adds to the program small.
+[[noreturn]] inline void throwFormattedInput(fmt::string_view format, fmt::format_args arguments) {
+  throw InputError(fmt::vformat(format, arguments));
+}
+[[noreturn]] inline void throwFormattedRun(fmt::string_view format, fmt::format_args arguments) {
+  throw RunError(fmt::vformat(format, arguments));
+}
 
 template <class... Args>
 [[noreturn]] void throwInput(fmt::format_string<Args...> format, Args&&... args) {

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "description/capabilities.h"
+#include "lighting/strategy.h"
+
+namespace chromeball {
+namespace {
+
+using D = RenderDescription;
+
+std::string strategyOf(const D& d) { return resolveStrategy(d.lighting.strategy); }
+
+// Whether the picture or a layer has paths, and of how many bounces.
+bool followsPaths(const D& d) {
+  return !d.settings.usesEnvironmentMaps() || d.settings.wantsAov(Aov::Irradiance);
+}
+int bouncesOf(const D& d) { return followsPaths(d) ? d.settings.path().maxDepth : 0; }
+
+// Whether light is sampled at surfaces: also at those of glass, whose bounces are counted apart.
+bool lightsSurfaces(const D& d, const SceneContents& c) {
+  return bouncesOf(d) > 0 || (followsPaths(d) && c.hasBodies);
+}
+// Whether samples of the BSDF find light that the strategy samples too.
+bool samplesAreas(const D& d) {
+  const std::string strategy = strategyOf(d);
+  return strategy == "suns" || (strategy != "bsdf" && !hasLights(strategy));
+}
+
+bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
+bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
+
+constexpr std::array kDependences = {
+    Dependence{"camera.shutter", "anything that moves",  // at the times of other frames it may
+               [](const D& d, const SceneContents& c) {
+                 return !d.camera.shutter || c.moves || d.run.isOfFrames;
+               }},
+    Dependence{"camera.shutter_steps", "an open shutter",
+               [](const D& d, const SceneContents&) { return d.camera.shutter.has_value(); }},
+    Dependence{"probe.mapping", "a probe's file",
+               [](const D& d, const SceneContents&) { return d.probe.file.has_value(); }},
+    Dependence{"probe.rotation", "a probe",
+               [](const D& d, const SceneContents& c) {
+                 return c.hasProbe || d.origins.has("probe.rotation_keys");  // which are named
+               }},
+    Dependence{"probe.rotation_keys", "a probe", hasProbe},
+    Dependence{"probe.scale", "a probe", hasProbe},
+    Dependence{"lighting.strategy", "a probe", hasProbe},
+    Dependence{"lighting.strategy", "an integrator that samples the probe (path, direct)",
+               [](const D& d, const SceneContents&) {
+                 return followsPaths(d) || strategyOf(d) == "suns";
+               }},
+    Dependence{"lighting.strategy", "bounces",
+               [](const D& d, const SceneContents& c) {
+                 return lightsSurfaces(d, c) || !followsPaths(d) || !c.hasProbe ||
+                        d.lighting.showLights || strategyOf(d) == "suns";
+               }},
+    Dependence{"lighting.mis", "an integrator that samples the probe (path, direct)",
+               [](const D& d, const SceneContents&) { return followsPaths(d); }},
+    Dependence{"lighting.mis", "bounces",
+               [](const D& d, const SceneContents& c) {
+                 return lightsSurfaces(d, c) || !followsPaths(d);
+               }},
+    Dependence{"lighting.mis", "light that light samples and BSDF samples both find",
+               [](const D& d, const SceneContents& c) {
+                 return c.hasAreaLights || (c.hasProbe && samplesAreas(d)) || !lightsSurfaces(d, c);
+               }},
+    Dependence{"lighting.from", "suns",
+               [](const D& d, const SceneContents& c) {
+                 return d.lighting.from == LightFrom::All || c.hasSuns;
+               }},
+    Dependence{"lighting.lights", "punctual lights of the models", hasModelLights},
+    Dependence{"lighting.light_units", "punctual lights of the models", hasModelLights},
+    Dependence{"render.guide", "light of a probe",
+               [](const D& d, const SceneContents& c) {
+                 return d.settings.guiding != Guiding::On ||
+                        (c.hasProbe && d.lighting.from != LightFrom::Suns);
+               }},
+    Dependence{"render.glass_shadows", "smooth bodies of glass",
+               [](const D& d, const SceneContents& c) {
+                 return !d.straightGlassShadows || c.hasStraightGlass;
+               }},
+    Dependence{"render.regularize", "paths of more bounces, or bodies of glass",
+               [](const D& d, const SceneContents& c) {
+                 return !d.settings.regularize || bouncesOf(d) > 1 ||
+                        (c.hasBodies && followsPaths(d));  // whose bounces are counted apart
+               }},
+    Dependence{"render.irradiance_cache", "paths of more bounces",
+               [](const D& d, const SceneContents&) {
+                 return !d.settings.cacheError || d.settings.usesCache();
+               }},
+    Dependence{
+        "render.max_depth", "the integrator path",
+        [](const D& d, const SceneContents&) { return bouncesOf(d) == d.settings.maxDepth; }},
+    Dependence{"render.max_diffuse_depth", "a higher limit of all bounces",
+               [](const D& d, const SceneContents&) {
+                 return d.settings.maxDiffuseDepth < d.settings.path().maxDepth;
+               }},
+    Dependence{"render.max_specular_depth", "a higher limit of all bounces",
+               [](const D& d, const SceneContents&) {
+                 return d.settings.maxSpecularDepth < d.settings.path().maxDepth;
+               }},
+    Dependence{"render.max_transmission_depth", "bodies of glass",
+               [](const D&, const SceneContents& c) { return c.hasBodies; }},
+    Dependence{"render.max_transmission_depth", "an integrator that follows paths (path, direct)",
+               [](const D& d, const SceneContents&) { return followsPaths(d); }},
+    Dependence{"render.single_sided", "single-sided surfaces",
+               [](const D& d, const SceneContents& c) {
+                 return d.singleSided == SingleSided::Camera || c.hidesBacks;
+               }},
+    Dependence{
+        "composite.ground_reflectance_range", "`[probe] scale = \"plate\"`",
+        [](const D& d, const SceneContents&) { return !d.composite || d.probe.isScaledByPlate; }},
+};
+
+}  // namespace
+
+std::span<const Dependence> dependences() { return kDependences; }
+
+std::string namedOrigin(const RenderDescription& description, std::string_view setting) {
+  const std::string origin = description.origins.of(setting);
+  const bool isName = origin.starts_with("--") || origin == setting;
+  return isName ? origin : fmt::format("{}: `{}`", origin, setting);
+}
+
+std::vector<std::string> idleSettings(const RenderDescription& description,
+                                      const SceneContents& contents) {
+  std::vector<std::string> lines;
+  for (const Dependence& d : kDependences) {
+    if (!description.origins.has(d.setting) || d.isMet(description, contents)) continue;
+    lines.push_back(
+        fmt::format("{} has no effect without {}", namedOrigin(description, d.setting), d.needs));
+  }
+  return lines;
+}
+
+}  // namespace chromeball
