@@ -146,6 +146,7 @@ TEST(Capabilities, EveryConflictIsFound) {
 TEST(Capabilities, EverySettingInVainIsNamed) {
   D open = plain();
   open.camera.shutter.emplace();
+  open.lighting.strategy = "suns";
   open.settings.maxDiffuseDepth = open.settings.maxSpecularDepth = 2;
   D inVain = plain();
   inVain.probe.file.reset();
@@ -159,16 +160,19 @@ TEST(Capabilities, EverySettingInVainIsNamed) {
   composite(inVain, CompositeMode::Difference);
   D mapped = plain();
   mapped.settings.integrator = IntegratorKind::EnvironmentMap;
+  mapped.settings.occlusion.ambient = mapped.settings.occlusion.reflection = true;
   D flat = plain();  // no bounces
   flat.settings.maxDepth = 0;
   D delta = plain();
   delta.lighting.strategy = "median-cut:8";
+  D suns = plain();
+  suns.lighting.strategy = "suns";
   const SceneContents nothing, probe{.hasProbe = true},
-      all{true, true, true, true, true, true, true, true};
+      all{true, true, true, true, true, true, true, true, true, true};
   for (const Dependence& d : dependences()) {
     const std::string name(d.setting);
     std::vector<std::vector<std::string>> told;
-    for (D* description : {&open, &inVain, &mapped, &flat, &delta})
+    for (D* description : {&open, &inVain, &mapped, &flat, &delta, &suns})
       for (const SceneContents& contents : {nothing, probe, all}) {
         EXPECT_EQ(idleSettings(*description, contents), std::vector<std::string>{}) << name;
         description->origins.set(name, "scene.toml:7");

@@ -139,6 +139,35 @@ TEST_F(CommandBake, OcclusionDoesNotDependOnLight) {
                                          "--max-depth have no effect on occlusion\n")));
 }
 
+// As a key of the scene file, as an option, and the option before the key.
+TEST_F(CommandBake, OcclusionHasTheDistanceOfTheSceneFile) {
+  const auto baked = [&](const std::string& key, const Strings& more) {
+    std::ofstream(folder_ / "d.toml")
+        << "model = '" << kSourceDir << "/scenes/models/pillars.gltf'\n[render]\n"
+        << key;
+    Strings words{"bake",
+                  folder_ / "d.toml",
+                  "--what",
+                  "ambient-occlusion",
+                  "--to",
+                  "vertices",
+                  "--quiet",
+                  "--samples",
+                  "4",
+                  "-o",
+                  folder_ / "d.glb"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    return fileContents(folder_ / "d.glb");
+  };
+  const auto nearby = baked("", {"--ao-distance", "0.01"});
+  EXPECT_NE(nearby, baked("", {}));
+  EXPECT_EQ(nearby, baked("ao_distance = 0.01\n", {}));
+  EXPECT_EQ(nearby, baked("ao_distance = 7.0\n", {"--ao-distance", "0.01"}));
+}
+
 TEST_F(CommandBake, RefusesBadInput) {
   refuses({}, "must end in .glb or .gltf", "refused.obj");
   refuses({"--size", "1000000000"}, "--size: should be a whole number from 16 to 16384");

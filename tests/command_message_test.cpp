@@ -153,8 +153,17 @@ TEST_F(SlowCommandMessage, WarnsAboutSettingsWithoutEffect) {
   EXPECT_EQ(render({}).error.find("warning"), std::string::npos);
   EXPECT_NE(render({"--sun-angle", "1"}).error.find("warning: --sun-angle has no effect"),
             std::string::npos);
-  EXPECT_EQ(render({"--sun-angle", "1", "--strategy", "suns"}).error.find("no effect"),
-            std::string::npos);
+  const auto effect = [&](const Words& more) {
+    Words words{"render",    w_.save(), "--sun-angle", "1",   "--strategy", "suns",
+                "--samples", "1",       "--size",      "4x4", "-o",         folder_ / "a.exr"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runCommand(words).error.find("no effect") == std::string::npos;
+  };
+  const std::string noon = std::string(kSourceDir) + "/probes/noon.exr";
+  EXPECT_TRUE(effect({"--probe", noon}));
+  EXPECT_TRUE(effect({"--probe", noon, "--light-from", "suns"}));
+  EXPECT_FALSE(effect({"--probe", noon, "--light-from", "rest"}));
+  EXPECT_FALSE(effect({"--probe", folder_ / "probe.exr"}));  // without suns
   EXPECT_NE(render({"--aov", "albedo"}, "a.png").error.find("warning: --aov has no effect"),
             std::string::npos);
   EXPECT_EQ(render({"--aov", "albedo"}, "a.exr").error.find("warning"), std::string::npos);

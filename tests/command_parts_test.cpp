@@ -152,6 +152,31 @@ TEST(SlowMerge, OfCropsIsTheWholeImage) {
 }
 
 // Large parts are read in bands of rows; the last band may be smaller.
+// The header states the mean over the pixels.
+TEST(SlowMerge, OfCropsWithOtherNumbersOfSamples) {
+  const Parts parts;
+  const std::string many = parts.renderOnly("m.exr", {"--samples", "64", "--crop", "0,0,12,32"});
+  const std::string few = parts.renderOnly("f.exr", {"--samples", "16", "--crop", "12,0,36,32"});
+  for (const Words& order : {Words{many, few}, Words{few, many}})
+    EXPECT_EQ(metadataNumber(readImageFile(parts.merge("all.exr", order)).metadata, "samples"), 28);
+}
+
+// A shard whose limit is met by the samples that all repeat goes on to some of its own.
+TEST(SlowMerge, OfShardsThatALimitEndsEarly) {
+  const Parts parts;
+  for (const Words& limit : {Words{"--noise", "60"}, Words{"--time", "0.001"}}) {
+    Words shards;
+    for (const char* which : {"1/3", "2/3", "3/3"}) {
+      Words words = limit;
+      words.insert(words.end(), {"--shard", which});
+      shards.push_back(parts.renderOnly(std::string(which, 1) + ".exr", words));
+      EXPECT_EQ(readImageFile(shards.back()).metadata.count("samplesOfAll"), 0u);
+    }
+    EXPECT_GE(metadataNumber(readImageFile(parts.merge("all.exr", shards)).metadata, "samples"),
+              32);
+  }
+}
+
 TEST(SlowMerge, OfLargePartsIsTheWholeImage) {
   const Parts parts;
   const auto part = [&](const std::string& name, const Words& more) {
@@ -271,6 +296,13 @@ TEST(SlowParts, RefuseWhatIsNoPart) {
   expectError(parts.words({"--shard", "1/2"}, parts.out / "o.png"), "needs an .exr");
 }
 
+TEST(SlowParts, ACropIsNoShard) {
+  const Parts parts;
+  const std::string crop = parts.renderOnly("c.exr", {"--samples", "8", "--crop", "0,0,12,32"});
+  const std::string shard = parts.renderOnly("s.exr", {"--samples", "8", "--shard", "1/2"});
+  expectError({"merge", shard, crop, "-o", parts.out / "m.exr"}, "c.exr: is no shard");
+}
+
 TEST(SlowCheckpoint, GoesOnAfterAnInterrupt) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr";
@@ -299,6 +331,39 @@ TEST(SlowCheckpoint, GoesOnAfterAnInterrupt) {
 }
 
 // Another number of all samples would give it samples of other shards.
+// Also of a render that ends where the guides would begin.
+TEST(SlowCheckpoint, OfFewSamplesIsWrittenAndContinued) {
+  const Parts parts;
+  for (const char* samples : {"7", "8", "16"}) {
+    const std::string file = parts.out / (std::string(samples) + "-state.exr");
+    parts.renderOnly("some.exr", {"--samples", samples, "--checkpoint", file});
+    ASSERT_TRUE(std::filesystem::exists(file)) << samples;
+    const std::string more =
+        parts.renderOnly("more.exr", {"--samples", "32", "--checkpoint", file, "--resume"});
+    EXPECT_EQ(metadataNumber(readImageFile(more).metadata, "samples"), 32) << samples;
+  }
+}
+
+// A file with another name is no change of its contents.
+TEST(SlowCheckpoint, OfAnotherFileSaysSo) {
+  const Parts parts;
+  const std::string state = parts.out / "state.exr", copy = parts.out / "copy.exr";
+  const std::string probe = std::string(kSourceDir) + "/probes/noon.exr";
+  std::filesystem::copy_file(probe, copy);
+  const auto words = [&](const std::string& file) {
+    return Words{"render",       std::string(kSourceDir) + "/scenes/models/pillars.gltf",
+                 "--probe",      file,
+                 "--size",       "8x8",
+                 "--samples",    "4",
+                 "--checkpoint", state,
+                 "-o",           parts.out / "o.exr"};
+  };
+  EXPECT_EQ(runCommand(words(probe)).status, 0);
+  Words other = words(copy);
+  other.push_back("--resume");
+  expectError(other, "only one of them reads");
+}
+
 TEST(SlowCheckpoint, OfAShardKeepsItsNumberOfSamples) {
   const Parts parts;
   const std::string checkpoint = parts.out / "c.exr";

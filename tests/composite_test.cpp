@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "composite/layers.h"
+#include "composite/local_scene.h"
 #include "composite/render_composite.h"
 #include "measure/statistics.h"
 #include "probe/synth.h"
@@ -23,6 +24,22 @@ struct Worlds {
   void markRestLocal() { isObject.resize(scene.instances.size(), false); }
   void markRestObjects() { isObject.resize(scene.instances.size(), true); }
 };
+
+// In a time that does not grow with the square of the depth.
+TEST(LocalScene, IsWhatIsBelowItsNodes) {
+  constexpr int kNodes = 300'000, kLocal = 1000;
+  Scene scene;
+  for (int node = 0; node < kNodes; ++node) {
+    scene.nodeNames.push_back(node == kLocal ? "local" : "");
+    scene.nodeParents.push_back(node - 1);
+    scene.instances.push_back({.node = node});
+  }
+  ObjectMask isObject = findObjects(scene, {{"local", "here"}}, "here");
+  for (int node = 0; node < kNodes; ++node) ASSERT_EQ(isObject[size_t(node)], node < kLocal);
+  std::ranges::reverse(scene.instances);  // the deepest first
+  std::reverse(isObject.begin(), isObject.end());
+  EXPECT_EQ(findObjects(scene, {{"local", "here"}}, "here"), isObject);
+}
 
 CompositeRender composite(const Worlds& w, const Probe& probe, const std::string& strategy,
                           const RenderSettings& settings, const Image& plate,

@@ -140,6 +140,13 @@ TEST(ExrFiles, TheColourIsChosenByName) {
     EXPECT_EQ(layerOf(none), "none") << none.front();
 }
 
+// In a time that does not grow with the square of their number.
+TEST(ExrFiles, ColourIsFoundAmongManyChannels) {
+  PartChannels part{"", {}};
+  for (int i = 0; i < 300'000; ++i) part.channels.push_back(fmt::format("c{:06}.R", i));
+  EXPECT_FALSE(findColorChannels({&part, 1}));
+}
+
 // Recognises words in the names that renderers give to their layers, anywhere in them.
 TEST(ExrFiles, LayersWithoutLightAreNeverLight) {
   const auto isColor = [](const Names& channels) {

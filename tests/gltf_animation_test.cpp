@@ -154,6 +154,17 @@ TEST(GltfAnimation, MorphWeights) {
   EXPECT_NEAR(glm::distance(origin(at(w, 0.5)), vec3(0.5f, 1, 0)), 0, 1e-6);
 }
 
+TEST(GltfAnimation, EachKeyHasAWeightForEachMorphTarget) {
+  const std::vector<std::vector<float>> outputs = {{0, 4, 2, 0, 1, 1}, {0, 4}};
+  for (const std::vector<float>& weights : outputs) {
+    GltfWriter w;
+    const int moved = w.vec3s({1, 0, 0, 1, 0, 0, 1, 0, 0});
+    addTriangle(w, {{"targets", {{{"POSITION", moved}}, {{"POSITION", moved}}}}});
+    animate(w, 0, "weights", "LINEAR", scalars(w, {0, 1}), scalars(w, weights));
+    EXPECT_NE(errorMessageOf(w).find("meshes[0] has 2 morph targets"), std::string::npos);
+  }
+}
+
 // Only those: the others keep their values, which is said where the target has a weight.
 TEST(GltfAnimation, MorphTargetsMovePositionsNormalsAndTangents) {
   for (const char* name : {"COLOR_0", "TEXCOORD_0"})

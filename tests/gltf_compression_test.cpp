@@ -207,6 +207,33 @@ TEST(GltfCompression, DracoDecodesToTheOriginal) {
   }
 }
 
+// Each primitive has the mesh of its own extension, also in accessors that others share.
+TEST(GltfCompression, DracoPrimitivesMayShareAccessors) {
+  Data wide = kSequential;  // a square of two metres
+  const Data one = {0x80, 0x3f, 0x0a}, two = {0x00, 0x40, 0x0a};
+  const auto at = std::ranges::search(wide, one).begin();
+  std::copy(two.begin(), two.end(), at);
+  for (const bool sharesIndices : {false, true})
+    for (const bool sharesMesh : {false, true}) {
+      GltfWriter w;
+      dracoSquare(w, kSequential);
+      json second = w.root["meshes"][0]["primitives"][0];
+      if (!sharesIndices) second["indices"] = w.accessor(-1, kUShort, "SCALAR", 6);
+      if (!sharesMesh)
+        second["extensions"]["KHR_draco_mesh_compression"]["bufferView"] = w.view(wide);
+      w.root["meshes"][0]["primitives"].push_back(second);
+      const Scene scene = w.load();
+      ASSERT_EQ(scene.instances.size(), 2u);
+      for (size_t m = 0; m < 2; ++m) {
+        const Mesh& mesh = scene.meshes[size_t(scene.instances[m].mesh)];
+        ASSERT_EQ(mesh.triangles.size(), 2u);
+        float largest = 0;
+        for (const vec3& p : mesh.positions) largest = std::max(largest, p.x);
+        EXPECT_NEAR(largest, m == 0 || sharesMesh ? 1 : 2, 1e-5);
+      }
+    }
+}
+
 TEST(GltfCompression, DracoWithTooManyTrianglesIsRejectedBeforeDecoding) {
   for (const auto& [data, at] :
        {std::pair{kSequential, kSequentialFaces}, {kEdgebreaker, kEdgebreakerFaces}}) {

@@ -163,6 +163,28 @@ TEST(Gltf, TheDefaultSceneSelectsTheNodes) {
   EXPECT_EQ(w.errorMessage(), "scene: scenes[2] does not exist (2 in the file)");
 }
 
+// The first index behind the last view, too.
+TEST(Gltf, AccessorsOfMissingViewsAreRejected) {
+  for (const int beyond : {0, 1}) {
+    GltfWriter w;
+    addTriangle(w);
+    const int views = int(w.root["bufferViews"].size());
+    w.root["accessors"][0]["bufferView"] = views + beyond;
+    EXPECT_NE(
+        w.errorMessage().find("bufferViews[" + std::to_string(views + beyond) + "] does not exist"),
+        std::string::npos)
+        << w.errorMessage();
+  }
+}
+
+TEST(Gltf, CamerasBeyondTheRangeAreRejected) {
+  GltfWriter w;
+  addTriangle(w);
+  w.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+  w.add("nodes", {{"camera", 0}, {"translation", {0, 1e39, 0}}});
+  EXPECT_NE(w.errorMessage().find("nodes[1]: its camera is more than 1e9 m"), std::string::npos);
+}
+
 TEST(Gltf, MeshesWithoutNodesAreAtTheOrigin) {
   GltfWriter w;
   addTriangle(w);

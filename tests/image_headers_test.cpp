@@ -417,6 +417,19 @@ TEST(ImageHeaders, NumbersBeyondRgbeAreCounted) {
 }
 
 // Light beyond alpha is lost in a .png where nothing covers the background.
+TEST(ImageHeaders, LostAlphaIsNamed) {
+  Image image(2, 1, 4);
+  image.texels = {1, 1, 1, 1, 0.5f, 0.5f, 0.5f, 0.5f};
+  for (const char* name : {"a.hdr", "a.pfm"}) {
+    const Messages warnings = lostLight(name, image);
+    ASSERT_EQ(warnings.size(), 1u) << name;
+    EXPECT_NE(warnings[0].text.find("holds no alpha"), std::string::npos);
+  }
+  for (const char* name : {"a.exr", "a.png"}) EXPECT_TRUE(lostLight(name, image).empty()) << name;
+  image.texels[7] = 1;
+  EXPECT_TRUE(lostLight("a.hdr", image).empty());
+}
+
 TEST(ImageHeaders, UncoveredLightIsCounted) {
   Image image(4, 1, 4);  // black, an object, its bright edge, a caustic
   const std::array<std::array<float, 4>, 4> texels = {

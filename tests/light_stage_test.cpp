@@ -370,6 +370,23 @@ TEST(LightStage, FileKeepsItsElements) {
     }
 }
 
+// In 16 bits.
+TEST(LightStage, BrightNumbersAreClippedAndCounted) {
+  const TemporaryFolder folder;
+  BasisRender render = stageOf(threeScenes()[2].scene, "sh:1", settingsOf(2));
+  render.stage.own.texels[4] = 1e9f;
+  render.stage.elements.texels[5] = -1e9f;
+  for (const bool halves : {false, true}) {
+    StageWriter file(folder / "s.exr", render.stage, render.stage.height(), {}, halves);
+    file.write(render.stage, render.color);
+    EXPECT_EQ(file.clipped(), halves ? 2u : 0u);
+    file.commit();
+    const LightStage read = readStage(folder / "s.exr");
+    EXPECT_EQ(read.own.texels[4], halves ? 65504.0f : 1e9f);
+    EXPECT_EQ(read.elements.texels[5], halves ? -65504.0f : -1e9f);
+  }
+}
+
 TEST(LightStage, IsTheSameForAnyNumberOfThreads) {
   const Scene scene = threeScenes()[0].scene;
   const BasisRender all = stageOf(scene, "cube:2", settingsOf(4));

@@ -386,6 +386,23 @@ TEST(Sequence, EachFrameMayHaveItsCache) {
   expectError(cached({"--animation-time", "1"}, "rest.cache"), "`animation-time` was not given");
 }
 
+// Before the first is rendered.
+TEST(Sequence, NoFrameWritesWhatAnotherReadsOrWrites) {
+  const Moving model;
+  const TemporaryFolder out;
+  for (const char* name : {"probe.0000.exr", "probe.0001.exr"})
+    std::filesystem::copy_file(kProbe, out / name);
+  const auto frames = [&](const Words& more, const std::string& name) {
+    return words(model.scene(), more, out / name);
+  };
+  expectError(
+      frames({"--frames", "0:1", "--probe-sequence", out / "probe.####.exr"}, "probe.00#1.exr"),
+      "would overwrite the input");
+  expectError(frames({"--frames", "1:10:9", "-o", out / "g.#0.exr"}, "g.#.exr"),
+              "would overwrite the other output");
+  EXPECT_EQ(out.files().size(), 2u);
+}
+
 TEST(Sequence, RefusesWhatItCannotRender) {
   const Moving model;
   const TemporaryFolder out;

@@ -168,6 +168,21 @@ TEST_F(SlowStarved, AnInterruptInTheFirstPassLeavesTheOldFile) {
   EXPECT_NE(result.error.find("a.partial.exr"), std::string::npos) << result.error;
 }
 
+// Nor an input, the checkpoint or another output, whose name it would have; nor does a lock.
+TEST_F(SlowStarved, NoInputHasANameOfWhatARenderMayWrite) {
+  const TemporaryFolder out;
+  std::filesystem::copy_file(std::string(kSourceDir) + "/probes/dusk.exr", out / "a.partial.exr");
+  std::filesystem::copy_file(std::string(kSourceDir) + "/probes/dusk.exr", out / "c.exr.lock");
+  const std::string probe = out / "a.partial.exr";
+  expectError({"render", std::string(kSourceDir) + "/scenes/models/pillars.gltf", "--probe", probe,
+               "--size", "4x4", "-o", out / "a.exr"},
+              "would overwrite the input");
+  expectError(words(out / "a.exr", {"--checkpoint", out / "a.partial.exr"}), "overwrite");
+  expectError(words(out / "a.exr", {"-o", out / "a.partial.exr"}), "overwrite");
+  expectError(words(out / "b.exr", {"--checkpoint", out / "c.exr"}), "has contents");
+  EXPECT_EQ(fileContents(out / "a.partial.exr"), fileContents(out / "c.exr.lock"));
+}
+
 TEST_F(SlowStarved, AKillDuringTheRenderLeavesTheOldFile) {
   const TemporaryFolder out;
   std::ofstream(out / "a.exr") << "old";

@@ -228,7 +228,7 @@ void AtomicFile::commit() {
   temporary_.clear();
 }
 
-FileLock::FileLock(const std::filesystem::path& file) : path_(file.string() + ".lock") {
+FileLock::FileLock(const std::filesystem::path& file) : path_(nameOf(file)) {
   for (;;) {
     descriptor_ = open(path_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
     if (descriptor_ < 0)
@@ -241,8 +241,11 @@ FileLock::FileLock(const std::filesystem::path& file) : path_(file.string() + ".
     struct stat locked {
     }, named{};
     if (fstat(descriptor_, &locked) == 0 && stat(path_.c_str(), &named) == 0 &&
-        locked.st_ino == named.st_ino && locked.st_dev == named.st_dev)
-      return;
+        locked.st_ino == named.st_ino && locked.st_dev == named.st_dev) {
+      if (locked.st_size == 0) return;
+      close(descriptor_);
+      throwInput("{}: has contents, and would be removed as a lock; rename it", path_.string());
+    }
     close(descriptor_);
   }
 }

@@ -82,8 +82,12 @@ std::filesystem::path replaceableFile(const std::filesystem::path& path);
 // Holds FILE.lock until it is destroyed. The system releases it also if the process is killed.
 class FileLock {
  public:
-  // Throws InputError if another process holds it, RunError if it cannot be created.
+  // Throws InputError if another process holds it, or if it has contents and is no lock; RunError
+  // if it cannot be created.
   explicit FileLock(const std::filesystem::path& file);
+  static std::filesystem::path nameOf(const std::filesystem::path& file) {
+    return file.string() + ".lock";
+  }
   ~FileLock();
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;

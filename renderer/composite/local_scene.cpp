@@ -55,10 +55,15 @@ ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& name
                  didYouMean(local.name, all));
     }
   }
+  std::vector<bool> isOutside(isLocal.size());  // of the nodes that have been looked at
   const auto isUnderLocal = [&](int node) {
-    while (node >= 0 && !isLocal[node])
-      node = scene.nodeParents.empty() ? -1 : scene.nodeParents[node];
-    return node >= 0;
+    std::vector<int> passed;  // looked at for the first time
+    for (; node >= 0 && !isLocal[node] && !isOutside[node];
+         node = scene.nodeParents.empty() ? -1 : scene.nodeParents[node])
+      passed.push_back(node);
+    const bool isUnder = node >= 0 && isLocal[node];
+    for (const int n : passed) (isUnder ? isLocal : isOutside)[n] = true;
+    return isUnder;
   };
   ObjectMask isObject;
   for (const Instance& instance : scene.instances) isObject.push_back(!isUnderLocal(instance.node));

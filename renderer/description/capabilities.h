@@ -36,10 +36,12 @@ void checkCapabilities(const RenderDescription& description);
 
 // What a description's files contain, as far as settings depend on it.
 struct SceneContents {
-  bool hasProbe = false;        // also from memory, or the models' own environment
-  bool hasModelLights = false;  // punctual lights of the models
-  bool hasSuns = false;         // extracted from the probe, or of the description
-  bool hasAreaLights = false;   // suns, sources in the probe, emitting surfaces
+  bool hasProbe = false;         // also from memory, or the models' own environment
+  bool hasModelLights = false;   // punctual lights of the models
+  bool hasSuns = false;          // extracted from the probe, or of the description
+  bool hasProbeSuns = false;     // only asked for if their angle is given
+  bool hasAmbientLight = false;  // lamps that light from everywhere
+  bool hasAreaLights = false;    // suns, sources in the probe, emitting surfaces
   bool hasBodies = false, hasStraightGlass = false;  // of glass; with straight shadows
   bool hidesBacks = false;                           // of single-sided surfaces, unless told not to
   bool moves = false;                                // while the shutter is open

@@ -30,6 +30,11 @@ bool samplesAreas(const D& d) {
   return strategy == "suns" || (strategy != "bsdf" && !hasLights(strategy));
 }
 
+bool wantsOcclusion(const D& d) {
+  return d.settings.integrator == IntegratorKind::AmbientOcclusion ||
+         d.settings.wantsAov(Aov::AmbientOcclusion) || d.settings.wantsAov(Aov::BentNormal);
+}
+
 bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
 bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
 
@@ -72,6 +77,13 @@ constexpr std::array kDependences = {
                [](const D& d, const SceneContents& c) {
                  return d.lighting.from == LightFrom::All || c.hasSuns;
                }},
+    Dependence{"lighting.sun_angle", "the strategy `suns`",
+               [](const D& d, const SceneContents&) { return strategyOf(d) == "suns"; }},
+    Dependence{"lighting.sun_angle", "suns in the probe's light",
+               [](const D& d, const SceneContents& c) {
+                 return strategyOf(d) != "suns" ||
+                        (c.hasProbeSuns && d.lighting.from != LightFrom::Rest);
+               }},
     Dependence{"lighting.lights", "punctual lights of the models", hasModelLights},
     Dependence{"lighting.light_units", "punctual lights of the models", hasModelLights},
     Dependence{"render.guide", "light of a probe",
@@ -87,6 +99,18 @@ constexpr std::array kDependences = {
                [](const D& d, const SceneContents& c) {
                  return !d.settings.regularize || bouncesOf(d) > 1 ||
                         (c.hasBodies && followsPaths(d));  // whose bounces are counted apart
+               }},
+    Dependence{"render.ao", "light from everywhere",
+               [](const D& d, const SceneContents& c) {
+                 return !d.settings.occlusion.ambient || c.hasProbe || c.hasAmbientLight;
+               }},
+    Dependence{"render.ao_distance", "light from everywhere",
+               [](const D& d, const SceneContents& c) {
+                 return c.hasProbe || c.hasAmbientLight || wantsOcclusion(d);
+               }},
+    Dependence{"render.reflection_occlusion", "light from everywhere",
+               [](const D& d, const SceneContents& c) {
+                 return !d.settings.occlusion.reflection || c.hasProbe || c.hasAmbientLight;
                }},
     Dependence{"render.irradiance_cache", "paths of more bounces",
                [](const D& d, const SceneContents&) {

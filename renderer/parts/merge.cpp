@@ -2,6 +2,7 @@
 #include "parts/merge.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <tuple>
 
@@ -29,6 +30,11 @@ std::string nameOf(const Crop& w) {
   return fmt::format("{},{},{},{}", w.x, w.y, w.width, w.height);
 }
 
+std::string inWords(const Shard& shard) {
+  if (shard.samplesOfAll == 0) return "no shard";
+  return fmt::format("one of {} shards of {} samples per pixel", shard.count, shard.samplesOfAll);
+}
+
 void checkSameRender(const std::vector<Header>& parts) {
   for (const Header& part : parts) {
     if (part.identity != parts[0].identity)
@@ -36,9 +42,7 @@ void checkSameRender(const std::vector<Header>& parts) {
                  differenceOf(parts[0].identity, part.identity));
     const Shard &one = parts[0].settings.shard, &other = part.settings.shard;
     if (one.count != other.count || one.samplesOfAll != other.samplesOfAll)
-      throwInput("{}: is one of {} shards of {} samples per pixel, and {} one of {} of {}",
-                 part.path, other.count, other.samplesOfAll, parts[0].path, one.count,
-                 one.samplesOfAll);
+      throwInput("{}: is {}, and {} is {}", part.path, inWords(other), parts[0].path, inWords(one));
   }
 }
 
@@ -152,7 +156,7 @@ void addPart(const std::string& path, MergedParts& whole) {
     const bool isWeighed = totals.film.isWeighed();
     if (isWeighed) whole.result.film.beWeighed();
     whole.result.addTotals(totals);
-    whole.addSamples(settings.shard, totals.samples);
+    whole.addSamples(settings, totals.samples);
 
     const Bands bands{window.width, window.height};
     PerThread<std::optional<RenderResult>> films;  // of one band each
@@ -207,11 +211,15 @@ MergedParts merge(const PartSet& parts, const Progress& progress) {
   return whole;
 }
 
-void MergedParts::addSamples(const Shard& shard, uint32_t samples) {
+void MergedParts::addSamples(const RenderSettings& ofPart, uint32_t samples) {
+  const Shard& shard = ofPart.shard;
   samplesOfCrop = shard.index == 0 ? samples : samplesOfCrop + samples;
   if (shard.count > 1) samplesOfCrop = std::min(samplesOfCrop, shard.samplesOfAll);  // rounded up
-  if (shard.index + 1 == shard.count)
-    result.samples = result.samples == 0 ? samplesOfCrop : std::min(result.samples, samplesOfCrop);
+  if (shard.index + 1 < shard.count) return;
+  const Crop window = ofPart.window();
+  samplesOfPixels += double(samplesOfCrop) * window.width * window.height;
+  result.samples =
+      uint32_t(std::lround(samplesOfPixels / (double(ofPart.width) * double(ofPart.height))));
 }
 
 }  // namespace chromeball

@@ -29,8 +29,10 @@ struct MergedParts {
   RenderPart part;
   RenderResult result;
   uint32_t samplesOfCrop = 0;  // per pixel, of the shards of one crop
+  double samplesOfPixels = 0;  // sum over the pixels of all complete crops
 
-  void addSamples(const Shard& shard, uint32_t samples);
+  // Adds a part with so many samples per pixel; the shards of a crop in order.
+  void addSamples(const RenderSettings& ofPart, uint32_t samples);
 };
 
 // Reads one part after the other, each by all threads. Takes the memory of the whole result and of

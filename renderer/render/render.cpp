@@ -304,6 +304,8 @@ RenderResult render(const Integrator& integrator, const World& world, const Came
     result.guidedRegions = training->lights().guidedRegions();
     result.causticFraction = training->caustics().empty() ? 0 : training->caustics().fraction();
   }
+  // A render of few samples ends within the training, and may be continued.
+  if (control && training && !result.interrupted) training->end(result.film.errors(), state.done);
   if (control && state.canBeStored()) control->end(state);
   return std::move(state.result);
 }

@@ -7,10 +7,11 @@
 namespace chromeball {
 namespace {
 
-constexpr uint32_t kFirstPass = 4;     // samples per pixel
-constexpr uint32_t kMinForNoise = 16;  // samples per pixel before an estimate of noise is used
-constexpr uint32_t kMinToAdapt = 16;   // samples per pixel of an adaptive render
-constexpr double kPilot = 16;          // samples per pixel of the pilot of an adaptive render;
+constexpr uint32_t kFirstPass = 4;      // samples per pixel
+constexpr uint32_t kLeastOfShard = 16;  // samples per pixel besides those that it repeats
+constexpr uint32_t kMinForNoise = 16;   // samples per pixel before an estimate of noise is used
+constexpr uint32_t kMinToAdapt = 16;    // samples per pixel of an adaptive render
+constexpr double kPilot = 16;           // samples per pixel of the pilot of an adaptive render;
 constexpr double kMinPilot = 1.0 / 8, kMaxPilot = 1.0 / 4;  // relative to the whole render
 constexpr double kRepeatedPilot = 1.0 / 16;  // at least, of one that all shards repeat
 constexpr uint32_t kMaxInTheDark = 4096;     // samples per pixel before a black image is final
@@ -42,8 +43,16 @@ uint32_t Schedule::next(uint32_t done, const Film& film) {
   return uint32_t(wanted);
 }
 
+uint32_t Schedule::leastSamples() const {
+  const Shard& shard = settings_.shard;
+  const bool repeats = shard.index > 0 && shard.repeated > 0;
+  return std::min(repeats ? shard.repeated + kLeastOfShard : kFirstPass, settings_.samples);
+}
+
 // The number of samples per pixel at which the render ends, as far as is known.
 double Schedule::goalAfter(uint32_t done, const Film& film) {
+  const uint32_t least = leastSamples();
+  if (done < least) return least;
   double goal = settings_.samples;
   if (settings_.timeLimit) goal = std::min(goal, untilTime(done));
   if (settings_.noiseLimit && done >= kMinForNoise) {
@@ -54,8 +63,8 @@ double Schedule::goalAfter(uint32_t done, const Film& film) {
 }
 
 double Schedule::overrun(uint32_t done) const {
-  const bool isFirst = done <= std::min(kFirstPass, settings_.samples);
-  return settings_.timeLimit && isFirst && seconds() > *settings_.timeLimit ? seconds() : 0;
+  const bool isLeast = done <= leastSamples();
+  return settings_.timeLimit && isLeast && seconds() > *settings_.timeLimit ? seconds() : 0;
 }
 
 double Schedule::progress(double samples) const {

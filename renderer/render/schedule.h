@@ -26,8 +26,8 @@ class Schedule {
   // the render is finished.
   uint32_t next(uint32_t done, const Film& film);
 
-  // Seconds so far if the first pass, which is always completed, took longer than the time limit;
-  // else 0.
+  // Seconds so far if the samples that are always taken took longer than the time limit; else 0.
+  // Those are the first pass, and a pass of its own for a shard that first repeats another's.
   double overrun(uint32_t done) const;
 
   // Whether the samples so far are the pilot of an adaptive render, so that the pass that next()
@@ -42,6 +42,7 @@ class Schedule {
   void archive(Archive& a, bool adapts);
 
  private:
+  uint32_t leastSamples() const;
   double goalAfter(uint32_t done, const Film& film);
   double untilTime(uint32_t done) const;
   double untilNoise(uint32_t done, const Film& film);

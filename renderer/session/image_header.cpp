@@ -184,7 +184,11 @@ std::string differenceOf(const std::string& stored, const std::string& own) {
   names.update(is);
   for (const auto& [name, ignored] : names.items()) {
     if (was.value(name, Json()) == is.value(name, Json())) continue;
-    if (name.starts_with("contents of")) return fmt::format("the {} changed", name);
+    constexpr std::string_view kContents = "contents of ";
+    if (name.starts_with(kContents))
+      return was.contains(name) && is.contains(name)
+                 ? fmt::format("the {} changed", name)
+                 : fmt::format("only one of them reads {}", name.substr(kContents.size()));
     const auto text = [&name = name](const Json& identity) {
       if (!identity.contains(name)) return std::string("not given");
       const Json& value = identity.at(name);

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "description/capabilities.h"
+#include "probe/sun_extraction.h"
 #include "render/guide_training.h"
 #include "session/memory_estimate.h"
 
@@ -39,6 +40,14 @@ bool receivesNoShadow(const LoadedScene& loaded) {
   return false;
 }
 
+bool hasProbeSuns(const LoadedScene& loaded) {
+  const RenderDescription& description = loaded.description;
+  if (loaded.loadedProbe.hasSuns) return true;
+  return description.lighting.from == LightFrom::All &&
+         description.origins.has("lighting.sun_angle") &&
+         !extractSuns(loaded.probe.latLong()).suns.empty();
+}
+
 SceneContents contentsOf(const LoadedScene& loaded) {
   const RenderDescription& description = loaded.description;
   const Scene& scene = loaded.scene;
@@ -50,16 +59,21 @@ SceneContents contentsOf(const LoadedScene& loaded) {
   const bool hasSuns =
       loaded.loadedProbe.hasSuns || (description.scene && !description.scene->suns.empty()) ||
       std::ranges::any_of(description.lamps, [](const Lamp& l) { return l.sun.has_value(); });
-  return {.hasProbe = description.probe.file || description.probe.map || scene.environment,
-          .hasModelLights = loaded.hasModelLights,
-          .hasSuns = hasSuns,
-          .hasAreaLights =
-              hasSuns || loaded.sources || hasMaterial([](const Material& m) { return m.emits(); }),
-          .hasBodies = hasBodies(scene),
-          .hasStraightGlass = hasMaterial([](const Material& m) { return m.straightShadows; }),
-          .hidesBacks = hasMaterial([](const Material& m) { return !m.doubleSided; }),
-          .moves = loaded.moves ||
-                   (description.camera.shutter && description.camera.shutter->turn != 0)};
+  return {
+      .hasProbe = description.probe.file || description.probe.map || scene.environment,
+      .hasModelLights = loaded.hasModelLights,
+      .hasSuns = hasSuns,
+      .hasProbeSuns = hasProbeSuns(loaded),
+      .hasAmbientLight = !scene.ambient.empty() ||
+                         std::ranges::any_of(description.lamps,
+                                             [](const Lamp& l) { return l.ambient.has_value(); }),
+      .hasAreaLights =
+          hasSuns || loaded.sources || hasMaterial([](const Material& m) { return m.emits(); }),
+      .hasBodies = hasBodies(scene),
+      .hasStraightGlass = hasMaterial([](const Material& m) { return m.straightShadows; }),
+      .hidesBacks = hasMaterial([](const Material& m) { return !m.doubleSided; }),
+      .moves =
+          loaded.moves || (description.camera.shutter && description.camera.shutter->turn != 0)};
 }
 
 void addMemory(const LoadedScene& loaded, Collector& messages) {

@@ -29,11 +29,11 @@ Camera chooseWithoutLens(const RenderDescription& description, const Scene& scen
     }
   if (const auto& wanted = description.camera.name) {
     std::vector<std::string_view> names;
+    std::set<std::string_view> known;
     for (const auto name : {&Camera::name, &Camera::node})
       for (const Camera& camera : scene.cameras) {
         if (camera.*name == *wanted) return camera;
-        if (std::count(names.begin(), names.end(), camera.*name) == 0)
-          names.push_back(camera.*name);
+        if (known.insert(camera.*name).second) names.push_back(camera.*name);
       }
     throwInput("{}: the model has no camera `{}`; {}", description.origins.of("camera.name"),
                *wanted, names.empty() ? "it has none" : didYouMean(*wanted, names));

@@ -145,7 +145,9 @@ Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
   metadata.merge(sampleMetadata(finished, render));
   if (description.settings.clamp)
     metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
-  if (const Shard& shard = description.settings.shard; shard.samplesOfAll > 0)
+  const RenderSettings& settings = description.settings;
+  if (const Shard& shard = settings.shard;
+      shard.samplesOfAll > 0 && !settings.noiseLimit && !settings.timeLimit)
     metadata["samplesOfAll"] = int(shard.samplesOfAll);  // up to kMaxSamples
   metadata.merge(idManifests(finished.image, loaded.scene));
   return metadata;
@@ -180,15 +182,23 @@ Messages checkOutputs(const RenderDescription& description) {
   const bool isForLens = description.output.develop.lens &&
                          description.output.layers == std::vector<std::string>{"depth"};
   if (!has(".exr") && !isForLens) warn("output.aovs", "only an .exr holds layers");
-  if (const std::string strategy = resolveStrategy(description.lighting.strategy);
-      !strategy.starts_with("suns"))
-    warn("lighting.sun_angle", fmt::format("the strategy is {}; only suns has discs", strategy));
   return messages;
+}
+
+std::string partialName(const std::string& output) {
+  constexpr size_t kLongestName = 255;
+  std::filesystem::path path = output;
+  const std::string end = ".partial" + path.extension().string();
+  path.replace_filename(path.stem().string().substr(0, kLongestName - end.size()) + end);
+  return path.string();
 }
 
 void prepareOutputs(const RenderDescription& description, std::vector<std::string> inputs) {
   inputs.push_back(description.path);
   std::vector<std::string> outputs = description.output.files;
+  for (const std::string& file : description.output.files) outputs.push_back(partialName(file));
+  if (const auto& checkpoint = description.run.checkpoint)
+    outputs.push_back(FileLock::nameOf(*checkpoint).string());
   for (const auto* file :
        {&description.output.stats, &description.run.checkpoint, &description.run.cache})
     if (*file) outputs.push_back(**file);

@@ -37,6 +37,9 @@ Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& rende
 // have no effect. Throws InputError or RunError.
 Messages checkOutputs(const RenderDescription& description);
 
+// The name under which an image is saved that has no samples in some pixels.
+std::string partialName(const std::string& output);
+
 // Call when all files are read (`inputs`; the scene file itself is added) and no other input error
 // can occur. Throws InputError if an output would overwrite an input, and makes the folders that
 // the scene file names for its images.

@@ -22,27 +22,38 @@
 namespace chromeball {
 namespace {
 
-// Baked ambient occlusion has options of its own, not a render's.
-RenderDescription plannedRender(const BakeOptions& a) {
+// Takes the distance of ambient occlusion out of the settings: it is the map's, not a layer's.
+std::optional<double> takeDistance(SceneFile& scene, Settings& settings) {
+  constexpr std::string_view kName = "render.ao_distance";
+  std::optional<double> distance = settings.getIfGiven<double>(kName);
+  if (!distance) distance = scene.settings.getIfGiven<double>(kName);
+  settings.erase(kName);
+  scene.settings.erase(kName);
+  return distance;
+}
+
+// `distance`: output, of ambient occlusion.
+RenderDescription plannedRender(const BakeOptions& a, std::optional<double>& distance) {
   SceneFile scene = openScene(a.scene);
   if (scene.composite)
     throwInput("{}: a composite cannot be baked; bake its model",
                scene.origins.of("composite.entry"));
-  dropUnheeded(scene, SceneCommand::Bake);
   Settings settings = a.settings;
-  if (a.light() == BakedLight::AmbientOcclusion) dropLight(scene, settings);
-  settings.erase("render.ao_distance");
+  const bool isOcclusion = a.light() == BakedLight::AmbientOcclusion;
+  if (isOcclusion) distance = takeDistance(scene, settings);
+  dropUnheeded(scene, SceneCommand::Bake);
+  if (isOcclusion) dropLight(scene, settings);
   return planRender(std::move(scene), settings);
 }
 
-BakeSettings bakeSettings(const BakeOptions& a, const RenderDescription& description) {
+BakeSettings bakeSettings(const BakeOptions& a, const RenderDescription& description,
+                          std::optional<double> distance) {
   BakeSettings settings;
   settings.what = a.light();
   settings.samples = description.settings.samples;
   settings.seed = description.settings.seed;
   settings.maxDepth = description.settings.maxDepth;
-  if (const auto distance = a.settings.getIfGiven<double>("render.ao_distance"))
-    settings.distance = float(*distance);
+  if (distance) settings.distance = float(*distance);
   return settings;
 }
 
@@ -50,8 +61,8 @@ class Bake {
  public:
   explicit Bake(const BakeOptions& options)
       : options_(options),
-        loaded_(loadScene(plannedRender(options))),
-        settings_(bakeSettings(options, loaded_.description)),
+        loaded_(loadScene(plannedRender(options, distance_))),
+        settings_(bakeSettings(options, loaded_.description, distance_)),
         meshes_(placedMeshes(loaded_.scene)) {
     checkDistinct({options.output, options.toVertices() ? "" : options.lightmapPath()},
                   loaded_.files);
@@ -188,6 +199,7 @@ class Bake {
 
   const BakeOptions& options_;
   Stopwatch watch_;
+  std::optional<double> distance_;  // set by the next one's initialisation
   LoadedScene loaded_;
   BakeSettings settings_;
   std::vector<PlacedMesh> meshes_;

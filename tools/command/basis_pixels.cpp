@@ -58,6 +58,7 @@ Metadata metadataOf(const SceneOptions& options, const RenderDescription& descri
 struct Written {
   InvalidSamples invalid;
   bool hasOwnLight = false;
+  uint64_t clipped = 0;  // numbers beyond the range of halves
 };
 
 // Renders and writes bands of `rows` rows.
@@ -76,6 +77,7 @@ Written writeStage(const BasisRenderer& renderer, const RenderSettings& s, int r
     written.hasOwnLight = !band.stage.own.empty();
   }
   file->commit();
+  written.clipped = file->clipped();
   return written;
 }
 
@@ -104,6 +106,11 @@ void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
   if (const InvalidSamples& invalid = written.invalid; invalid.total() > 0)
     warn(fmt::format("{} invalid samples were left out; the first is in pixel {}, {}",
                      invalid.total(), invalid.x, invalid.y));
+  if (written.clipped > 0)
+    warn(
+        fmt::format("{}: {} numbers above 65504, the largest of 16 bits, were clipped; leave out "
+                    "--half",
+                    own.out, written.clipped));
   if (!options.quiet())
     fmt::print("{} x {} pixels, {} samples, {} elements ({}){}{} in {:.2f} s: {}\n", s.width,
                s.height, s.samples, basis.size(), basis.name(),

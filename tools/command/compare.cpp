@@ -205,6 +205,11 @@ void compare(const CompareArguments& a) {
   RenderDescription description = planRender(std::move(scene), a.scene.settings);
   Messages ofRows;
   Study study = planStudy(a, ofRows);
+  // What is said of the suns' angle holds for the rows that have suns.
+  const auto hasSuns = [](const std::string& row) { return row.starts_with("suns"); };
+  if (description.origins.has("lighting.sun_angle") &&
+      std::ranges::any_of(study.strategies, hasSuns))
+    description.lighting.strategy = "suns";
   const ThreadLimit threads = threadLimit(a.scene.settings);
   const LoadedScene loaded = loadScene(description);
   description = loaded.description;

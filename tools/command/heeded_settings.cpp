@@ -18,8 +18,10 @@ constexpr std::string_view kKeysOfBake[] = {"render.size",         "camera.file"
 constexpr std::string_view kKeysOfBasis[] = {"lighting.lights", "lighting.from"};
 constexpr std::string_view kKeysOfBasisVertices[] = {"render.size", "camera.file",
                                                      "lighting.lights", "lighting.from"};
-// Keys whose option means something else than the key.
-constexpr std::string_view kOptionsOfBake[] = {"render.ao_distance"};
+// Keys that the command takes out itself where it heeds them.
+constexpr std::string_view kTakenByBake[] = {"render.ao_distance"};
+// The radiance is baked as it is, not as a camera would show it.
+constexpr std::string_view kOfCameras[] = {"output.develop"};
 // The subjects of a comparison, which its own options set.
 constexpr std::string_view kVariedByCompare[] = {"lighting.strategy", "render.samples",
                                                  "render.time", "render.noise"};
@@ -42,13 +44,15 @@ Names keysOf(SceneCommand command) {
 }
 
 bool heeds(SceneCommand command, const Setting& setting) {
-  if (command == SceneCommand::Bake && isIn(kOptionsOfBake, setting)) return false;
+  if (command == SceneCommand::Bake && isIn(kTakenByBake, setting)) return false;
   return isOptionOf(command, setting) || isIn(keysOf(command), setting);
 }
 
 // Whether an image of `render` would differ without the setting.
 bool changesImages(const Setting& setting, const SettingValue& value) {
-  if (setting.effect != Effect::Image && setting.effect != Effect::Limit) return false;
+  if (setting.effect != Effect::Image && setting.effect != Effect::Limit &&
+      !isIn(kOfCameras, setting))
+    return false;
   const std::string text = toText(value);
   const bool isDefault = text == setting.fallback && text != "on";  // nothing is on by itself
   return text != "off" && text != "false" && !isDefault;

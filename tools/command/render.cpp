@@ -30,17 +30,6 @@
 namespace chromeball {
 namespace {
 
-// An image without samples in some pixels must not overwrite one that may be complete.
-void nameAsPartial(std::vector<std::string>& outputs) {
-  for (std::string& output : outputs) {
-    constexpr size_t kLongestName = 255;
-    std::filesystem::path path = output;
-    const std::string end = ".partial" + path.extension().string();
-    path.replace_filename(path.stem().string().substr(0, kLongestName - end.size()) + end);
-    output = path.string();
-  }
-}
-
 std::string guidedInWords(const RenderResult& render) {
   const bool lights = render.guidedRegions > 0, bounces = render.causticFraction > 0;
   if (!lights && !bounces) return "";
@@ -118,7 +107,8 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
         prepared, [](double fraction) { return fraction; }, interrupted);
   }();
   addState(loaded, part, result);
-  if (result.render.samples == 0) nameAsPartial(description.output.files);
+  if (result.render.samples == 0)  // must not overwrite an image that may be complete
+    for (std::string& file : description.output.files) file = partialName(file);
   writeImages(description, loaded, result, seconds);
 
   print(resultMessages(loaded, prepared, result), options.quiet());
@@ -133,6 +123,22 @@ bool isFinished(const SequenceFrame& frame) {
   const auto stats = all.getIfGiven<std::string>("stats");
   const auto exists = [](const std::string& path) { return std::filesystem::exists(path); };
   return std::ranges::all_of(files, exists) && (!stats || exists(*stats));
+}
+
+// What a frame writes is no other frame's, and not read by any.
+void checkFiles(const Sequence& sequence) {
+  std::vector<std::string> outputs, inputs;
+  for (const int number : sequence.numbers()) {
+    const SequenceFrame frame = sequence.frame(number);
+    Settings all = frame.scene.settings;
+    all.merge(frame.given);
+    for (const std::string& file : all.get<std::vector<std::string>>("output.file"))
+      outputs.push_back(file);
+    for (const char* name : {"stats", "checkpoint"})
+      if (const auto file = all.getIfGiven<std::string>(name)) outputs.push_back(*file);
+    if (const auto probe = all.getIfGiven<std::string>("probe.file")) inputs.push_back(*probe);
+  }
+  checkDistinct(outputs, inputs);
 }
 
 // The probes of all frames that are to be rendered: so a render of hours does not end at the first
@@ -164,6 +170,7 @@ void printNew(const Messages& messages, std::set<std::string>& printed, bool qui
 void renderFrames(const Sequence& sequence, const SceneOptions& options) {
   const std::vector<int>& frames = sequence.numbers();
   const bool overwrites = options.settings.get<bool>("overwrite");
+  checkFiles(sequence);
   if (options.settings.has("probe-sequence")) checkProbes(sequence, overwrites);
   const ThreadLimit threads = threadLimit(options.settings);
   const Viewers viewers(options.settings, [] { interrupted = true; });

@@ -48,7 +48,7 @@ void addDepthCuts(const RenderSettings& settings, const DepthCut& cut, Messages&
     if (!(fraction > kMinFraction)) continue;
     const char* remedy = isOfDirect(limit, settings) ? "--integrator path" : "a higher one";
     messages.push_back(
-        {Message::Kind::Warning, fmt::format("{} cut about {:.2g}% of the light; {} keeps it",
+        {Message::Kind::Warning, fmt::format("{} cut about {:.3g}% of the light; {} keeps it",
                                              limitGiven(limit, settings), 100 * fraction, remedy)});
   }
 }
@@ -74,10 +74,11 @@ void addExcluded(const RenderResult& result, Messages& messages) {
         "first at pixel ({}, {}); --aov invalid shows where",
         invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
         invalid.of(Defect::Negative), invalid.x, invalid.y));
+  const bool isComposite = !result.layers.empty() && result.groups.empty();
   if (result.clamped.count)
     warning(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the light of {}",
                         result.clamped.count, 100 * result.clamped.fractionRemoved(),
-                        result.layers.empty() ? "the image" : "objects and differences"));
+                        isComposite ? "objects and differences" : "the image"));
 }
 
 Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,

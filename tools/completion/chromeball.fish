@@ -171,7 +171,7 @@ complete -c chromeball -n '__fish_seen_subcommand_from basis' -l basis -r -d 'Of
 complete -c chromeball -n '__fish_seen_subcommand_from basis' -l glossy -d 'Of vertices: matrices for surfaces that look different from each side; compressed'
 complete -c chromeball -n '__fish_seen_subcommand_from basis' -l clusters -r -d 'Of matrices with principal components: 16'
 complete -c chromeball -n '__fish_seen_subcommand_from basis' -l vectors -r -d 'Of each cluster: 8'
-complete -c chromeball -n '__fish_seen_subcommand_from basis' -l half -d 'Write 16 bits per number: half the file, to 0.05%'
+complete -c chromeball -n '__fish_seen_subcommand_from basis' -l half -d 'Write 16 bits per number: half the file, to 0.05% from 6e-5 to 65504'
 complete -c chromeball -n '__fish_seen_subcommand_from basis' -s o -l output -r -d 'The light stage to write, .exr; of vertices the model, .glb or .gltf'
 complete -c chromeball -n '__fish_seen_subcommand_from basis' -l animation -r -d 'Shows the models in the pose of this animation. (default: the first if `time` is given, else the rest pose)'
 complete -c chromeball -n '__fish_seen_subcommand_from basis' -l animation-time -r -d 'The time of the animation. (default: 0)'

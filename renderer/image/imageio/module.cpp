@@ -40,11 +40,18 @@ class OpenedImage : public ModuleImage {
     const bool wasRead =
         spec.tile_width ? input_->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, texels)
                         : readRows(spec, texels);
-    if (!wasRead || input_->has_error()) throw std::runtime_error(input_->geterror());
+    if (!wasRead || input_->has_error()) throw std::runtime_error(reasonOf(input_->geterror()));
     if (isWhiteZero(spec) && header_.integerBits > 0) turnGrey(spec, texels);
   }
 
  private:
+  // libtiff goes to a row of each channel in turn, and not back within a compressed strip.
+  static std::string reasonOf(const std::string& error) {
+    if (error.find("random access") == std::string::npos) return error;
+    return "its channels are stored one after the other, in compressed strips of several rows, "
+           "which is not supported; save it with interleaved channels";
+  }
+
   static bool holdsContiguousDoubles(const OIIO::ImageSpec& spec) {
     return spec.format == OIIO::TypeDesc::DOUBLE &&
            (spec.nchannels == 1 || spec.get_string_attribute("planarconfig") != "separate");

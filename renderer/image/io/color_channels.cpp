@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
 #include <string_view>
 
 namespace chromeball {
@@ -123,17 +124,13 @@ std::optional<int> colorRank(const std::string& layer) {
   return std::ranges::find(words, "beauty") != words.end() ? kWithBeauty : kOtherLayer;
 }
 
-bool hasChannel(const std::vector<std::string>& channels, const std::string& name) {
-  return std::find(channels.begin(), channels.end(), name) != channels.end();
-}
-
 // Y, or the only channel besides alpha, unless that is known to be something else.
 std::optional<std::string> greyChannel(const std::vector<std::string>& channels) {
   constexpr std::array kPartsOfColor = {"R", "G", "B", "X", "Z", "RY", "BY", "U", "V"};
   const auto isPart = [&](const std::string& channel) {
     return std::find(kPartsOfColor.begin(), kPartsOfColor.end(), channel) != kPartsOfColor.end();
   };
-  const bool hasY = hasChannel(channels, "Y");
+  const bool hasY = std::ranges::find(channels, "Y") != channels.end();
   if (hasY && std::ranges::none_of(
                   channels, [&](const auto& channel) { return isPart(channel) && channel != "Z"; }))
     return "Y";
@@ -154,12 +151,11 @@ struct ColorCandidate {
 
 void addCandidates(const PartChannels& part, size_t index,
                    std::vector<ColorCandidate>& candidates) {
-  std::vector<std::string> layers;
+  const std::set<std::string_view> names(part.channels.begin(), part.channels.end());
   for (const std::string& channel : part.channels) {
     if (channel != "R" && !channel.ends_with(".R")) continue;
     const std::string prefix = channel.substr(0, channel.size() - 1);
-    if (!hasChannel(part.channels, prefix + "G") || !hasChannel(part.channels, prefix + "B"))
-      continue;
+    if (!names.contains(prefix + "G") || !names.contains(prefix + "B")) continue;
     const std::string layer = prefix.empty() ? part.name : prefix.substr(0, prefix.size() - 1);
     if (const auto rank = colorRank(layer))
       candidates.push_back({*rank, {index, layer, {prefix + "R", prefix + "G", prefix + "B"}, {}}});

@@ -139,11 +139,23 @@ class ExrRowsWriter::Output {
     file_.commit();
   }
 
+  uint64_t clipped() const { return clipped_; }
+
  private:
+  std::vector<half> clippedHalves(const std::vector<float>& numbers) {
+    constexpr float kLargest = 65504;
+    std::vector<half> halves(numbers.size());
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      clipped_ += std::fabs(numbers[i]) > kLargest;
+      halves[i] = std::clamp(numbers[i], -kLargest, kLargest);
+    }
+    return halves;
+  }
+
   void writeRows(Image& rows) {
     const size_t channels = layout_.channels.size();
     std::vector<half> halves;
-    if (layout_.halves) halves.assign(rows.texels.begin(), rows.texels.end());
+    if (layout_.halves) halves = clippedHalves(rows.texels);
     const size_t number = layout_.halves ? sizeof(half) : sizeof(float);
     char* texels = layout_.halves ? reinterpret_cast<char*>(halves.data())
                                   : reinterpret_cast<char*>(rows.texels.data());
@@ -174,6 +186,7 @@ class ExrRowsWriter::Output {
   AtomicFile file_;
   ExrLayout layout_;
   int most_, written_ = 0;  // rows
+  uint64_t clipped_ = 0;    // numbers
   std::unique_ptr<ExrStream> stream_;
   std::unique_ptr<Imf::OutputFile> out_;
 };
@@ -184,6 +197,8 @@ ExrRowsWriter::ExrRowsWriter(const fs::path& path, const ExrLayout& layout)
 ExrRowsWriter::~ExrRowsWriter() = default;
 
 void ExrRowsWriter::write(std::span<const Image* const> images) { output_->write(images); }
+
+uint64_t ExrRowsWriter::clipped() const { return output_->clipped(); }
 
 void ExrRowsWriter::commit(const std::function<void(Archive&)>& state) { output_->commit(state); }
 

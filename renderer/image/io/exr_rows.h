@@ -23,7 +23,9 @@ struct ExrLayout {
   std::vector<std::string> channels;
   Metadata metadata;
   std::optional<Placement> placement = {};
-  bool halves = false;  // 16 bits, in which numbers above 65504 become infinite; else float32
+  // 16 bits: exact to 0.05% from 6e-5 to 65504, to 3e-8 below, and clipped above (clipped()); else
+  // float32.
+  bool halves = false;
   // ZIPS, else ZIP, which compresses 16 rows together. With hundreds of channels these gain nothing
   // from each other, and take 16 times the memory.
   bool separateRows = false;
@@ -38,6 +40,8 @@ class ExrRowsWriter {
 
   // The next rows, from the top down: images of one size, which have the layout's channels in turn.
   void write(std::span<const Image* const> images);
+
+  uint64_t clipped() const;  // numbers beyond the range of halves so far
 
   // To be called after the last row. `state`: further contents of the file (exr_state.h); may be
   // empty.

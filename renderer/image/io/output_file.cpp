@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/output_file.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -14,17 +17,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Compares existing files by device and inode, missing ones by their canonical names.
-bool isSameFile(const fs::path& a, const fs::path& b) {
-  std::error_code error;
-  const bool exists = fs::exists(a, error);
-  if (exists != fs::exists(b, error)) return false;
-  if (exists) return fs::equivalent(a, b, error);
-  const auto canonical = [&](const fs::path& path) {  // a missing file's relative path stays so
-    return fs::weakly_canonical(fs::absolute(replaceableFile(path), error), error);
-  };
-  const fs::path canonicalA = canonical(a);
-  return !error && canonicalA == canonical(b) && !error;
+// The same for all names of a file: its device and inode if it exists, else its canonical name.
+// Empty if that cannot be found out.
+std::string keyOf(const fs::path& file) {
+  struct stat found;
+  if (stat(file.c_str(), &found) == 0)
+    return fmt::format("{}:{}", uint64_t(found.st_dev), uint64_t(found.st_ino));
+  std::error_code error;  // a missing file's relative path stays so
+  const fs::path canonical =
+      fs::weakly_canonical(fs::absolute(replaceableFile(file), error), error);
+  return error ? std::string() : canonical.string();
 }
 
 fs::path folderOf(const fs::path& file) {
@@ -45,16 +47,18 @@ void checkOutputFile(const std::string& path, const std::vector<std::string_view
 
 void checkDistinct(const std::vector<std::string>& outputs,
                    const std::vector<std::string>& inputs) {
-  for (size_t i = 0; i < outputs.size(); ++i) {
-    if (outputs[i].empty()) continue;
-    for (const std::string& input : inputs)
-      if (!input.empty() && isSameFile(outputs[i], input))
-        throwInput("{}: would overwrite the input {}; give the output another name", outputs[i],
-                   input);
-    for (size_t j = 0; j < i; ++j)
-      if (!outputs[j].empty() && isSameFile(outputs[i], outputs[j]))
-        throwInput("{}: would overwrite the other output {}; give one of them another name",
-                   outputs[i], outputs[j]);
+  std::map<std::string, std::string> read, written;  // names by key
+  for (const std::string& input : inputs)
+    if (!input.empty()) read.try_emplace(keyOf(input), input);
+  for (const std::string& output : outputs) {
+    const std::string key = output.empty() ? "" : keyOf(output);
+    if (key.empty()) continue;
+    if (const auto same = read.find(key); same != read.end())
+      throwInput("{}: would overwrite the input {}; give the output another name", output,
+                 same->second);
+    if (const auto [same, isNew] = written.try_emplace(key, output); !isNew)
+      throwInput("{}: would overwrite the other output {}; give one of them another name", output,
+                 same->second);
   }
 }
 

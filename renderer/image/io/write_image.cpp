@@ -118,6 +118,12 @@ Messages writeImage(const fs::path& path, const Image& color, const DisplayTrans
 
 namespace {
 
+bool isOpaque(const Image& color) {
+  for (size_t i = 3; i < color.texels.size(); i += 4)
+    if (color.texels[i] != 1) return false;
+  return true;
+}
+
 std::optional<Message> uncoveredLight(const std::filesystem::path& path, const Image& color) {
   constexpr float kVisible = 1.0f / 255;
   size_t pixels = 0;
@@ -191,6 +197,10 @@ Messages numbersLost(const std::filesystem::path& path, const Image& color, bool
 Messages lostLight(const std::filesystem::path& path, const Image& color) {
   const std::string kind = lowerExtension(path);
   Messages messages;
+  if ((kind == ".hdr" || kind == ".pfm") && color.channels == 4 && !isOpaque(color))
+    messages.push_back(
+        {Message::Kind::Warning,
+         fmt::format("{}: holds no alpha, which is lost; an .exr or a .png does", path.string())});
   if (kind == ".png" && color.channels == 4)
     if (std::optional<Message> message = uncoveredLight(path, color))
       messages.push_back(*std::move(message));

@@ -65,6 +65,7 @@ Messages writeImage(const std::filesystem::path& path, const Image& color,
 // where nothing covers the background, such as a caustic on a shadow catcher:
 //   associated colour above alpha. A .png has unassociated colour, at most 1, so it holds no more
 //   than alpha. Only where alpha is below one half: the rest is clipped as any bright surface is.
+// - in an .hdr and a .pfm, alpha;
 // - in a .png and an .hdr, negative channels, and those that are NaN;
 // - in an .hdr, channels above the largest number of RGBE, and infinite ones.
 Messages lostLight(const std::filesystem::path& path, const Image& color);

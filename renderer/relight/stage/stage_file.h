@@ -23,6 +23,7 @@ class StageWriter {
   // The next rows, from the top down; `color`: their R, G, B.
   void write(const LightStage& band, const Image& color);
   void commit() { file_.commit(); }
+  uint64_t clipped() const { return file_.clipped(); }  // numbers beyond the range of halves
 
   // The most memory that writing takes besides the band, in bytes.
   static double bufferBytes(const DirectionBasis& basis, int width);

@@ -155,6 +155,17 @@ bool areDifferent(const std::vector<double>& a, const std::vector<double>& b) {
   return difference > kRounding * largest;
 }
 
+// Primitives of a mesh have the same number of morph targets (glTF 2.0, 3.7.2.2).
+void checkWeights(const GltfFile& file, const tinygltf::Node& node, size_t perKey,
+                  const std::string& where) {
+  if (node.mesh < 0 || size_t(node.mesh) >= file.model.meshes.size()) return;
+  const auto& primitives = file.model.meshes[size_t(node.mesh)].primitives;
+  const size_t targets = primitives.empty() ? perKey : primitives.front().targets.size();
+  if (perKey != targets)
+    file.fail("{}.output: has {} weights for each key, and meshes[{}] has {} morph targets", where,
+              perKey, node.mesh, targets);
+}
+
 // Numbers per key of a channel (readTrack()); 0: of a target that is ignored.
 int componentsOf(const std::string& path) {
   if (path == "weights") return 1;
@@ -197,6 +208,7 @@ void applyAnimation(GltfFile& file, const AnimationTime& when) {
     const auto& sampler = file.at(animation.samplers, channel.sampler, "samplers", where);
     const std::string at = fmt::format("animations[{}].samplers[{}]", index, channel.sampler);
     const Track track = readTrack(file, sampler, isWeights ? 1 : isRotation ? 4 : 3, at);
+    if (isWeights) checkWeights(file, node, track.width, at);
     std::vector<double>& target = isWeights         ? node.weights
                                   : isRotation      ? node.rotation
                                   : path == "scale" ? node.scale

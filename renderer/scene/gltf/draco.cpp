@@ -137,34 +137,78 @@ class DracoReader {
     const Value& attributes = memberOf(extension, "attributes");
     if (!memberOf(extension, "bufferView").IsInt() || !attributes.IsObject())
       file_.fail("{}: has no bufferView or no attributes", where);
-    tinygltf::Accessor& indices = accessor(primitive.indices, where + ".indices");
-    const draco::Mesh& mesh =
-        meshOf(memberOf(extension, "bufferView").GetNumberAsInt(), indices.count, where);
-    if (indices.bufferView < 0) {
-      indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-      setData(indices, size_t(mesh.num_faces()) * 3, indexBytes(mesh));
+    const int view = memberOf(extension, "bufferView").GetNumberAsInt();
+    const draco::Mesh& mesh = meshOf(view, ownCount(primitive.indices, where + ".indices"), where);
+    if (tinygltf::Accessor* indices =
+            toFill(primitive.indices, {view, kIndices}, where + ".indices")) {
+      indices->componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+      setData(*indices, size_t(mesh.num_faces()) * 3, indexBytes(mesh));
     }
     for (const std::string& name : attributes.Keys()) {
       const auto user = primitive.attributes.find(name);
       if (user == primitive.attributes.end()) continue;
       const std::string at = where + ".attributes." + name;
-      tinygltf::Accessor& target = accessor(user->second, at);
-      if (target.bufferView >= 0) continue;  // decoded for another primitive
       const Value& id = memberOf(attributes, name);
+      tinygltf::Accessor* target =
+          toFill(user->second, {view, id.IsInt() ? id.GetNumberAsInt() : -1}, at);
+      if (!target) continue;
       const draco::PointAttribute* attribute =
           id.IsInt() && id.GetNumberAsInt() >= 0
               ? mesh.GetAttributeByUniqueId(uint32_t(id.GetNumberAsInt()))
               : nullptr;
       if (!attribute) file_.fail("{}: the compressed mesh has no such attribute", at);
       file_.spend(uint64_t(mesh.num_points()) * 16);
-      setData(target, mesh.num_points(), attributeBytes(file_, mesh, *attribute, target, at));
+      setData(*target, mesh.num_points(), attributeBytes(file_, mesh, *attribute, *target, at));
     }
   }
 
+  // Whether the file has the vertices in compressed form only.
+  bool isNeededFor(const tinygltf::Primitive& primitive) const {
+    const auto positions = primitive.attributes.find("POSITION");
+    return positions != primitive.attributes.end() && positions->second >= 0 &&
+           size_t(positions->second) < file_.model.accessors.size() &&
+           (filled_.contains(positions->second) ||
+            file_.model.accessors[size_t(positions->second)].bufferView < 0);
+  }
+
  private:
+  static constexpr int kIndices = -2;
+  struct Source {
+    int view, attribute;  // the attribute's id; kIndices: the indices
+    bool operator==(const Source&) const = default;
+  };
+  struct Filled {
+    Source source;
+    size_t count;  // that the file states
+  };
+
   tinygltf::Accessor& accessor(int index, const std::string& where) {
     file_.at(file_.model.accessors, index, "accessors", where);
     return file_.model.accessors[size_t(index)];
+  }
+
+  size_t ownCount(int index, const std::string& where) {
+    const auto filled = filled_.find(index);
+    return filled != filled_.end() ? filled->second.count : accessor(index, where).count;
+  }
+
+  // The accessor that takes data from `source`: the one of the index, or a copy of it, with a new
+  // index, if that has data of another primitive's mesh. Null if nothing is to be decoded.
+  tinygltf::Accessor* toFill(int& index, const Source& source, const std::string& where) {
+    tinygltf::Accessor* found = &accessor(index, where);
+    const auto earlier = filled_.find(index);
+    if (earlier == filled_.end()) {
+      if (found->bufferView >= 0) return nullptr;
+    } else {
+      if (earlier->second.source == source) return nullptr;
+      tinygltf::Accessor copy = *found;
+      copy.count = earlier->second.count;
+      file_.model.accessors.push_back(std::move(copy));
+      index = int(file_.model.accessors.size() - 1);
+      found = &file_.model.accessors.back();
+    }
+    filled_[index] = {source, found->count};
+    return found;
   }
 
   void setData(tinygltf::Accessor& target, size_t count, Bytes bytes) {
@@ -189,15 +233,8 @@ class DracoReader {
 
   GltfFile& file_;
   std::map<int, std::unique_ptr<draco::Mesh>> meshes_;  // by buffer view
+  std::map<int, Filled> filled_;                        // by accessor
 };
-
-// Whether the file has the vertices in compressed form only.
-bool dependsOnExtension(const GltfFile& file, const tinygltf::Primitive& primitive) {
-  const auto positions = primitive.attributes.find("POSITION");
-  return positions != primitive.attributes.end() && positions->second >= 0 &&
-         size_t(positions->second) < file.model.accessors.size() &&
-         file.model.accessors[size_t(positions->second)].bufferView < 0;
-}
 
 }  // namespace
 
@@ -207,8 +244,7 @@ void decodeDraco(GltfFile& file) {
     auto& primitives = file.model.meshes[m].primitives;
     for (size_t p = 0; p < primitives.size(); ++p) {
       const auto found = primitives[p].extensions.find(kDracoExtension);
-      if (found == primitives[p].extensions.end() || !dependsOnExtension(file, primitives[p]))
-        continue;
+      if (found == primitives[p].extensions.end() || !reader.isNeededFor(primitives[p])) continue;
       reader.decode(primitives[p], found->second,
                     fmt::format("meshes[{}].primitives[{}].{}", m, p, kDracoExtension));
     }

@@ -177,11 +177,14 @@ std::string decodePercent(const std::string& uri) {
   return path;
 }
 
+void checkNoScheme(const std::string& uri) {
+  const size_t colon = uri.find(':');
+  if (colon != std::string::npos && colon < uri.find('/'))
+    failUri("has the scheme {}; it must be a relative path", uri.substr(0, colon + 1));
+}
+
 void checkFileName(const std::string& name) {
   if (name.empty()) failUri("is not a file name");
-  const size_t colon = name.find(':');
-  if (colon != std::string::npos && colon < name.find('/'))
-    failUri("has the scheme {}; it must be a relative path", name.substr(0, colon + 1));
   const auto isForbidden = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '\\'; };
   if (std::any_of(name.begin(), name.end(), isForbidden))
     failUri("has a backslash or a control character; it must be a relative path with /");

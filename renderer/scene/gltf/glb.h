@@ -37,9 +37,12 @@ bool decodeDataUri(const std::string& uri, std::vector<uint8_t>& bytes);
 // Replaces each %XX by the byte with that hexadecimal code.
 std::string decodePercent(const std::string& uri);
 
-// Both throw std::runtime_error with a reason to be preceded by the name ("is an absolute path").
+// These throw std::runtime_error with a reason to be preceded by the name ("is an absolute path").
 
-// Throws if a decoded URI is empty or has a scheme, a backslash or a control character.
+// Throws if a URI, still encoded, has a scheme (RFC 3986).
+void checkNoScheme(const std::string& uri);
+
+// Throws if a decoded URI is empty or has a backslash or a control character.
 void checkFileName(const std::string& name);
 
 // Throws if `folder / name` is outside of the folder: by an absolute path, by "..", or through a

@@ -150,6 +150,7 @@ Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const 
   const std::string name = decodePercent(uri);
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   try {
+    checkNoScheme(uri);
     checkFileName(name);
     if (external_ == ExternalFiles::Refuse) checkInside(folder, name);
   } catch (const std::exception& e) {

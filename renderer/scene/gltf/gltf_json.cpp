@@ -103,8 +103,15 @@ int fillGaps(json& root) {
           channel["target"]["node"] = -1;
   json& views = root["bufferViews"];
   const int none = int(views.size());
-  for (json& accessor : root["accessors"])
-    if (!accessor.contains("bufferView")) accessor["bufferView"] = none;
+  json& accessors = root["accessors"];
+  for (size_t i = 0; i < accessors.size(); ++i) {
+    json& view = accessors[i]["bufferView"];  // null: has none
+    if (view.is_number() && view.get<double>() == none)
+      throw std::runtime_error(
+          fmt::format("accessors[{}].bufferView: bufferViews[{}] does not exist ({} in the file)",
+                      i, none, none));
+    if (view.is_null()) view = none;
+  }
   views.push_back({{"buffer", 0}, {"byteLength", 1}});
   return none;
 }

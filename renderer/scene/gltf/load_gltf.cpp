@@ -59,6 +59,11 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
                     "\" is ignored: it has no field of view, or its node a scale of 0");
       continue;
     }
+    constexpr double kFarthest = 1e9;  // metres, as for meshes
+    if (const dvec3 position(tree.toWorld[size_t(i)][3]);
+        !(std::max({std::fabs(position.x), std::fabs(position.y), std::fabs(position.z)}) <=
+          kFarthest))
+      file.fail("nodes[{}]: its camera is more than 1e9 m from the origin", i);
     placeCamera(tree.toWorld[size_t(i)], camera);
     scene.cameras.push_back(camera);
   }
