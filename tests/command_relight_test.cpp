@@ -235,7 +235,7 @@ TEST_F(CommandRelight, RefusesBadStages) {
   invalid.elements.at(3, 2)[5] = NAN;
   writeStage(stage, invalid, Image(4, 4, 3), false);
   refusesStage("pixel 3, 2 has values that are not finite");
-  invalid.elements.at(3, 2)[5] = 1e6f;  // infinite in 16 bits
+  invalid.elements.at(3, 2)[5] = INFINITY;
   writeStage(stage, invalid, Image(4, 4, 3), true);
   refusesStage("pixel 3, 2 has values that are not finite");
   std::ofstream(stage) << "no picture";

@@ -71,7 +71,8 @@ constexpr std::array kDependences = {
                }},
     Dependence{"lighting.mis", "light that light samples and BSDF samples both find",
                [](const D& d, const SceneContents& c) {
-                 return c.hasAreaLights || (c.hasProbe && samplesAreas(d)) || !lightsSurfaces(d, c);
+                 return c.hasAreaLights || c.hasAmbientLight || (c.hasProbe && samplesAreas(d)) ||
+                        !lightsSurfaces(d, c);
                }},
     Dependence{"lighting.from", "suns",
                [](const D& d, const SceneContents& c) {

@@ -146,8 +146,9 @@ class ExrRowsWriter::Output {
     constexpr float kLargest = 65504;
     std::vector<half> halves(numbers.size());
     for (size_t i = 0; i < numbers.size(); ++i) {
-      clipped_ += std::fabs(numbers[i]) > kLargest;
-      halves[i] = std::clamp(numbers[i], -kLargest, kLargest);
+      const bool isBeyond = std::fabs(numbers[i]) > kLargest && std::isfinite(numbers[i]);
+      clipped_ += isBeyond;
+      halves[i] = isBeyond ? std::copysign(kLargest, numbers[i]) : numbers[i];
     }
     return halves;
   }

@@ -41,7 +41,7 @@ class ExrRowsWriter {
   // The next rows, from the top down: images of one size, which have the layout's channels in turn.
   void write(std::span<const Image* const> images);
 
-  uint64_t clipped() const;  // numbers beyond the range of halves so far
+  uint64_t clipped() const;  // finite numbers beyond the range of halves so far
 
   // To be called after the last row. `state`: further contents of the file (exr_state.h); may be
   // empty.
