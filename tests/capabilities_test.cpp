@@ -141,6 +141,49 @@ TEST(Capabilities, EveryConflictIsFound) {
   EXPECT_EQ(used.size(), kBring.size()) << "a feature is in no row";
 }
 
+// Of a description from memory, whose numbers no reader of text has checked.
+TEST(Capabilities, NumbersOutOfRangeAreRefused) {
+  EXPECT_NO_THROW(checkNumbers(plain()));
+  const std::map<std::string, std::vector<std::function<void(D&)>>> bad = {
+      {"render.size",
+       {[](D& d) {
+          d.size = ImageSize{0, 10};
+        },
+        [](D& d) {
+          d.size = ImageSize{10, -1};
+        }}},
+      {"render.samples", {[](D& d) { d.settings.samples = 0; }}},
+      {"render.noise",
+       {[](D& d) { d.settings.noiseLimit = NAN; }, [](D& d) { d.settings.noiseLimit = 0; }}},
+      {"render.time", {[](D& d) { d.settings.timeLimit = -1; }}},
+      {"clamp", {[](D& d) { d.settings.clamp = -1.0f; }}},
+      {"render.max_depth",
+       {[](D& d) { d.settings.maxDepth = -1; }, [](D& d) { d.settings.maxSpecularDepth = -1; }}},
+      {"lighting.lights", {[](D& d) { d.lighting.lamps = INFINITY; }}},
+      {"orbit", {[](D& d) { d.camera.orbit = NAN; }}},
+      {"camera.fov",
+       {[](D& d) { d.camera.placed.emplace().lens.fov = 4; },
+        [](D& d) { d.camera.placed.emplace().lens.fov = 0; },
+        [](D& d) { d.camera.placed.emplace().lens.fov = NAN; }}},
+      {"camera.aperture", {[](D& d) {
+         d.camera.lens = Lens{-0.6f, 1};
+       }}},
+      {"camera.focus", {[](D& d) {
+         d.camera.lens = Lens{0.1f, 0};
+       }}}};
+  for (const auto& [setting, changes] : bad)
+    for (const auto& change : changes) {
+      D d = plain();
+      change(d);
+      try {
+        checkNumbers(d);
+        ADD_FAILURE() << setting;
+      } catch (const InputError& error) {
+        EXPECT_TRUE(std::string(error.what()).starts_with(setting + ": should ")) << error.what();
+      }
+    }
+}
+
 // Every row is reported if its setting was given without what it needs: alone for some scene, and
 // never for one that has everything.
 TEST(Capabilities, EverySettingInVainIsNamed) {

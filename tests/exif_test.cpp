@@ -34,6 +34,17 @@ void expectSettings(const Exif& exif) {
 
 const std::vector<ExifEntry> kSettings = {exposureTime(1, 40), fNumber(18, 10), isoSpeed(100)};
 
+// The largest number of 16 bits stands for a larger one in another entry.
+TEST(Exif, SensitivitiesAbove65535) {
+  const TemporaryFolder folder;
+  for (const uint16_t tag : {0x8831, 0x8832, 0x8833}) {
+    const std::vector<ExifEntry> high = {isoSpeed(65535), {tag, 409600, 1}};
+    EXPECT_EQ(exifOf(exifBlock(high), folder).iso, 409600) << tag;
+    const std::vector<ExifEntry> low = {isoSpeed(100), {tag, 409600, 1}};
+    EXPECT_EQ(exifOf(exifBlock(low), folder).iso, 100) << tag;
+  }
+}
+
 TEST(Exif, OfEachFormatAndByteOrder) {
   const TemporaryFolder folder;
   for (const bool isBig : {false, true}) {

@@ -417,6 +417,13 @@ TEST(ImageHeaders, NumbersBeyondRgbeAreCounted) {
 }
 
 // Light beyond alpha is lost in a .png where nothing covers the background.
+TEST(ImageHeaders, ImagesWithoutColourAreNotWritten) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.exr", "a.hdr", "a.pfm", "a.png"})
+    EXPECT_THROW(writeImage(folder / name, Image(2, 2, 2)), InputError) << name;
+  EXPECT_TRUE(folder.files().empty());
+}
+
 TEST(ImageHeaders, LostAlphaIsNamed) {
   Image image(2, 1, 4);
   image.texels = {1, 1, 1, 1, 0.5f, 0.5f, 0.5f, 0.5f};

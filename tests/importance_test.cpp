@@ -79,6 +79,51 @@ TEST(Probe, rejectsScalesThatLeaveTheRangeOfFloat) {
   EXPECT_THROW(Probe(constantProbe({2, 1}, Rgb(1)), NAN), std::runtime_error);
 }
 
+// Several at once, of every number and through every probe, also tilted ones.
+TEST(Importance, LanesAreTheSameAsSingleDirections) {
+  constexpr float kRounding = 1e-5f;
+  const auto near = [](float lane, float single) {
+    return std::isnan(single) ? std::isnan(lane)
+                              : std::fabs(lane - single) <= kRounding * std::fabs(single);
+  };
+  const auto areNear = [&](const Rgb& lane, const Rgb& single) {
+    return near(lane.x, single.x) && near(lane.y, single.y) && near(lane.z, single.z);
+  };
+  for (const HardProbe& c : hardProbes())
+    for (const Rotation& rotation : {Rotation(33), Rotation::ofAngles({20, 30, 40})}) {
+      SCOPED_TRACE(c.name);
+      const Probe probe(c.image, rotation);
+      const Importance importance(probe, true);
+      const LightPoint point{};
+      for (uint64_t round = 0; round < 200; ++round) {
+        std::array<glm::uvec2, LightSource::kMaxMany> numbers;
+        std::array<DirectionSample, LightSource::kMaxMany> samples;
+        std::array<LightSource::Escape, LightSource::kMaxMany> rays;
+        std::array<LightSource::Escaped, LightSource::kMaxMany> found;
+        const size_t count = 1 + round % numbers.size();
+        for (size_t i = 0; i < count; ++i) {
+          numbers[i] = {uint32_t(hash(round, i, uint64_t(0))),
+                        uint32_t(hash(round, i, uint64_t(1)))};
+          rays[i] = {&point, squareToUniformSphere(random2(int(round), int(i)))};
+        }
+        if (round % 8 == 0) rays[count / 2].wi.y = NAN;
+        ASSERT_TRUE(importance.sampleMany(std::span(numbers).first(count),
+                                          std::span(samples).first(count)));
+        importance.escapedMany(std::span(rays).first(count), std::span(found).first(count));
+        for (size_t i = 0; i < count; ++i) {
+          const DirectionSample single =
+              importance.sampleDirection(numbers[i].x * 0x1p-32, numbers[i].y * 0x1p-32);
+          ASSERT_LT(glm::distance(samples[i].wi, single.wi), kRounding);
+          ASSERT_PRED2(near, samples[i].pdf, single.pdf);
+          ASSERT_PRED2(areNear, samples[i].irradiance, single.irradiance);
+          const LightSource::Escaped one = importance.escaped(point, rays[i].wi);
+          ASSERT_PRED2(areNear, found[i].radiance, one.radiance);
+          ASSERT_PRED2(near, found[i].pdf, one.pdf);
+        }
+      }
+    }
+}
+
 TEST(SlowImportance, samplesFollowThePdfOnEveryProbe) {
   const std::vector<HardProbe> all = hardProbes();
   for (bool compensated : {false, true})

@@ -23,7 +23,7 @@ TEST(Trig, agreesWithTheStandardLibrary) {
     }
   }
   EXPECT_EQ(atan2Turns(0, 0), 0);
-  EXPECT_TRUE(std::isnan(atan2Turns(NAN, 1)));
+  EXPECT_TRUE(std::isnan(atan2Turns(NAN, 1.0f)));
 }
 
 TEST(Frame, isOrthonormalForEveryNormal) {

@@ -200,6 +200,22 @@ TEST(SceneBuilder, NamesTheArrayAndIndexThatAreWrong) {
   EXPECT_EQ(errorOf([](SceneBuilder& b) { b.addNode("child", 5); }), "there is no node 5 among 1");
 }
 
+TEST(SceneBuilder, RefusesSharedMeshesThatWouldBeReadOutOfBounds) {
+  const auto error = [](const std::function<void(Mesh&)>& change) {
+    return errorOf([&](SceneBuilder& builder) {
+      Mesh mesh = Arrays().mesh;
+      change(mesh);
+      builder.addMesh(std::make_shared<const Mesh>(mesh));
+    });
+  };
+  EXPECT_EQ(error([](Mesh&) {}), "");
+  EXPECT_EQ(error([](Mesh& m) { m.triangles[3].z = 500000000; }),
+            "mesh 0: triangles[3]: there is no vertex 500000000 among 26");
+  EXPECT_EQ(error([](Mesh& m) { m.normals.pop_back(); }),
+            "mesh 0: normals: 25 elements for 26 vertices");
+  EXPECT_EQ(errorOf([](SceneBuilder& b) { b.addMesh(MeshList::Shared()); }), "mesh 0: is null");
+}
+
 TEST(SceneBuilder, MissingCoordinatesOfATextureAreAnError) {
   Scene scene;
   SceneBuilder builder(scene);
@@ -262,6 +278,13 @@ TEST(SceneBuilder, RefusesImagesCamerasAndLightsThatAreWrong) {
             "");
   EXPECT_NE(errorOf([](SceneBuilder& b) { b.addLight({.intensity = Rgb(-1)}); }), "");
   EXPECT_NE(errorOf([](SceneBuilder& b) { b.addLight({.direction = {0, 0, 3}}); }), "");
+  for (const auto& [inner, outer] : {std::pair{NAN, 0.2f}, {0.3f, 0.2f}, {0.1f, 7.0f}})
+    EXPECT_NE(errorOf([&](SceneBuilder& b) {
+                PunctualLight spot{.kind = PunctualLight::Kind::Spot};
+                spot.innerCone = inner, spot.outerCone = outer;
+                b.addLight(spot);
+              }),
+              "");
   EXPECT_NE(errorOf([](SceneBuilder& b) { b.addSun({{{0, 1, 0}, {1, 1, 1}, 0}}); }), "");
   EXPECT_NE(errorOf([](SceneBuilder& b) { b.addAmbient({Rgb(NAN)}); }), "");
 }

@@ -2,6 +2,8 @@
 // The image of a TIFF that is read, its orientation, and the files that are refused.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include <cstring>
 
 #include "base/error.h"
@@ -103,6 +105,34 @@ std::string predicted(const std::vector<double>& numbers, size_t rowLength, size
     }
   }
   return bytes;
+}
+
+// OpenImageIO does not check them, and would write out of bounds, or not end.
+TEST_F(Tiff, TilesThatDoNotFitTheirImageAreRefused) {
+  constexpr uint16_t kTileWidth = 322, kTileLength = 323, kTileDepth = 32998;
+  const auto tiled = [](uint32_t width, uint32_t length, uint32_t depth) {
+    return std::vector<TiffImage>{
+        rgb({{kTileWidth, 4, {width}}, {kTileLength, 4, {length}}, {kTileDepth, 4, {depth}}})};
+  };
+  for (const uint32_t large : {1u << 31, 0xffffffffu, 0u})
+    for (const auto& pages : {tiled(large, 16, 1), tiled(16, large, 1), tiled(16, 16, large)})
+      refuse(pages, "do not fit its image");
+  refuse(tiled(65536, 16384, 1), "do not fit its image");
+}
+
+// Any number above the image's height means one strip.
+TEST_F(Tiff, StripsMayHaveMoreRowsThanTheImage) {
+  TiffImage image = rgb();
+  image.compression = 8;
+  image.texels = deflatedOf(image.texels);
+  const std::vector<float> plain = read({rgb()}).image.texels;
+  for (const uint32_t rows : {uint32_t(kHeight), 1u << 30, 0x7fffffefu, 0x7fffffffu, 0xffffffffu}) {
+    std::string file = TiffWriter::file({image});
+    const std::string entry("\x16\x01\x04\x00\x01\x00\x00\x00", 8);  // RowsPerStrip
+    const size_t at = file.find(entry) + entry.size();
+    for (int i = 0; i < 4; ++i) file[at + size_t(i)] = char(rows >> 8 * i & 0xff);
+    EXPECT_EQ(read(file).image.texels, plain) << rows;
+  }
 }
 
 TEST_F(Tiff, NumbersOf64BitsAreRead) {

@@ -213,7 +213,55 @@ constexpr std::array kConflicts = {
              "it prints"},
 };
 
+struct Range {
+  std::string_view setting;
+  std::string_view should;  // "be ..."
+  bool (*isMet)(const D&);
+};
+
+bool isPositive(const std::optional<double>& number) { return !number || *number > 0; }
+
+constexpr std::array kRanges = {
+    Range{"render.size", "have at least one pixel",
+          [](const D& d) {
+            return d.size ? d.size->width > 0 && d.size->height > 0 : d.settings.height > 0;
+          }},
+    Range{"render.samples", "be 1 or more", [](const D& d) { return d.settings.samples > 0; }},
+    Range{"render.noise", "be above 0",
+          [](const D& d) { return isPositive(d.settings.noiseLimit); }},
+    Range{"render.time", "be above 0", [](const D& d) { return isPositive(d.settings.timeLimit); }},
+    Range{"clamp", "be above 0",
+          [](const D& d) { return !d.settings.clamp || *d.settings.clamp > 0; }},
+    Range{"render.max_depth", "not be negative",
+          [](const D& d) {
+            const RenderSettings& s = d.settings;
+            return std::min({s.maxDepth, s.maxTransmissionDepth, s.maxDiffuseDepth,
+                             s.maxSpecularDepth}) >= 0;
+          }},
+    Range{"lighting.lights", "be finite, and not negative",
+          [](const D& d) { return d.lighting.lamps >= 0 && std::isfinite(d.lighting.lamps); }},
+    Range{"orbit", "be finite", [](const D& d) { return std::isfinite(d.camera.orbit); }},
+    Range{"camera.fov", "be above 0, and below 180 degrees",
+          [](const D& d) {
+            const auto& placed = d.camera.placed;
+            if (!placed) return true;
+            const Camera& lens = placed->lens;
+            return lens.orthographic ? lens.halfHeight > 0 && std::isfinite(lens.halfHeight)
+                                     : lens.fov > 0 && lens.fov < kPi;
+          }},
+    Range{"camera.aperture", "be above 0",
+          [](const D& d) { return !d.camera.lens || d.camera.lens->aperture > 0; }},
+    Range{"camera.focus", "be above 0",
+          [](const D& d) { return !d.camera.lens || d.camera.lens->focus > 0; }},
+};
+
 }  // namespace
+
+void checkNumbers(const RenderDescription& description) {
+  for (const Range& range : kRanges)
+    if (!range.isMet(description))
+      throwInput("{}: should {}", description.origins.of(range.setting), range.should);
+}
 
 std::span<const Conflict> conflicts() { return kConflicts; }
 

@@ -31,6 +31,10 @@ std::span<const Conflict> conflicts();
 // The first conflict in a description; null: none.
 const Conflict* conflictIn(const RenderDescription& description);
 
+// Throws InputError "SETTING: should be ..." for the first number out of its range. (Those of text
+// have been checked where it was read.)
+void checkNumbers(const RenderDescription& description);
+
 // Throws InputError "SETTING'S ORIGIN: WHY" for the first conflict.
 void checkCapabilities(const RenderDescription& description);
 

@@ -26,7 +26,9 @@ struct ModelEntry {
 struct CameraEntry {
   glm::dvec3 position, target;
   vec3 up;
-  Camera lens = {};  // all but the place
+  // Its field of view or, if it is orthographic, its height. (Aperture, principal point and
+  // distortion: Lens, Optics.)
+  Camera lens = {};
 
   // Throws InputError if position and target coincide or if up is parallel to the view.
   Camera relativeTo(const glm::dvec3& origin) const {

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "math/lanes.h"
 
 namespace chromeball {
 namespace {
@@ -89,46 +90,78 @@ LightSource::Escaped Importance::escapedAt(const vec3& wi, const Probe::Position
   return {seen.radiance, seen.weight * scale_};
 }
 
+namespace {
+
+constexpr int kWidth = LanesOf<Float8>::kCount;
+
+// Calls visit(first, count) for groups of lanes.
+template <class Visit>
+void forLanes(size_t size, const Visit& visit) {
+  for (size_t first = 0; first < size; first += kWidth)
+    visit(first, int(std::min<size_t>(kWidth, size - first)));
+}
+
+}  // namespace
+
 // Each loop prefetches what the next one reads.
 bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
                             std::span<DirectionSample> out) const {
-  struct Place {
-    double u, v;
-    int column, row;
-  };
-  std::array<Place, kMaxMany> places;
   assert(numbers.size() <= kMaxMany);
   if (!(total_ > 0)) {
     for (DirectionSample& sample : out) sample.pdf = 0;
     return true;
   }
+  std::array<double, kMaxMany> us, vs;
+  std::array<int, kMaxMany> columns, rows;
   for (size_t i = 0; i < numbers.size(); ++i) {
-    Place& p = places[i];
-    p.u = numbers[i].x * 0x1p-32, p.v = numbers[i].y * 0x1p-32;
-    p.row = rows_.sample(0, p.v);
-    columns_.prefetchGuide(p.row, p.u);
+    us[i] = numbers[i].x * 0x1p-32, vs[i] = numbers[i].y * 0x1p-32;
+    rows[i] = rows_.sample(0, vs[i]);
+    columns_.prefetchGuide(rows[i], us[i]);
   }
-  for (size_t i = 0; i < numbers.size(); ++i) columns_.prefetchCdf(places[i].row, places[i].u);
+  for (size_t i = 0; i < numbers.size(); ++i) columns_.prefetchCdf(rows[i], us[i]);
   for (size_t i = 0; i < numbers.size(); ++i) {
-    Place& p = places[i];
-    p.column = columns_.sample(p.row, p.u);
-    probe_.prefetch(p.column, p.row);
+    columns[i] = columns_.sample(rows[i], us[i]);
+    probe_.prefetch(columns[i], rows[i]);
   }
-  for (size_t i = 0; i < numbers.size(); ++i) {
-    const Place& p = places[i];
-    out[i] = sampleOf(p.column, p.row, p.u, p.v);
-  }
+  forLanes(numbers.size(), [&](size_t first, int count) {
+    Int8 column{}, row{};
+    Float8 u{}, v{};
+    for (int k = 0; k < count; ++k) {
+      const size_t i = first + size_t(k);
+      column[k] = columns[i], row[k] = rows[i];
+      u[k] = float(us[i]), v[k] = float(vs[i]);
+    }
+    const auto point = field_.sample<Float8>(column, row, u, v);
+    const Float8 pdf = point.weight * scale_;
+    const Float8 x = point.radiance.x / pdf, y = point.radiance.y / pdf, z = point.radiance.z / pdf;
+    for (int k = 0; k < count; ++k) {
+      const Lanes3<Float8>& d = point.direction;
+      out[first + size_t(k)] = {{d.x[k], d.y[k], d.z[k]}, {x[k], y[k], z[k]}, pdf[k]};
+    }
+  });
   return true;
 }
 
 void Importance::escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const {
-  std::array<Probe::Position, kMaxMany> positions;
   assert(rays.size() <= kMaxMany);
-  for (size_t i = 0; i < rays.size(); ++i) {
-    positions[i] = probe_.locate(rays[i].wi);
-    probe_.prefetch(positions[i].column, positions[i].row);
-  }
-  for (size_t i = 0; i < rays.size(); ++i) out[i] = escapedAt(rays[i].wi, positions[i]);
+  std::array<Lanes3<Float8>, kMaxMany / kWidth> directions;
+  std::array<Probe::PositionOf<Float8>, kMaxMany / kWidth> positions;
+  forLanes(rays.size(), [&](size_t first, int count) {
+    Lanes3<Float8>& d = directions[first / kWidth];
+    d = Lanes3<Float8>{};
+    for (int k = 0; k < count; ++k) {
+      const vec3& wi = rays[first + size_t(k)].wi;
+      d.x[k] = wi.x, d.y[k] = wi.y, d.z[k] = wi.z;
+    }
+    const auto& p = positions[first / kWidth] = probe_.locate(d);
+    for (int k = 0; k < count; ++k) probe_.prefetch(p.column[k], p.row[k]);
+  });
+  forLanes(rays.size(), [&](size_t first, int count) {
+    const auto seen = field_.at(directions[first / kWidth], positions[first / kWidth]);
+    const Float8 pdf = seen.weight * scale_;
+    const Lanes3<Float8>& c = seen.radiance;
+    for (int k = 0; k < count; ++k) out[first + size_t(k)] = {{c.x[k], c.y[k], c.z[k]}, pdf[k]};
+  });
 }
 
 float Importance::pdf(const vec3& wi) const { return escaped({}, wi).pdf; }

@@ -25,7 +25,8 @@ class LuminanceField {
 
   // The integral of w over a cell, in cells of full height; those next to a pole are half as high.
   double integral(int column, int row) const {
-    const Weights w = weights(probe_->corners(column, row), row);
+    const Probe::Position p{column, row, 0, 0, 0};
+    const Weights<float> w = weights(probe_->cornersOf(p), row);
     const bool cap = row == 0 || row == probe_->height();
     return (double(w.w00) + w.w10 + w.w01 + w.w11) * (cap ? 0.125 : 0.25);
   }
@@ -38,49 +39,81 @@ class LuminanceField {
     float weight;  // w / sin(theta)
   };
   Point at(const vec3& direction, const Probe::Position& p) const {
-    const Probe::Corners corners = probe_->corners(p.column, p.row);
-    return {direction, Probe::interpolate(corners, p.s, p.t),
-            weights(corners, p.row).at(p.s, p.t) / std::max(p.sinTheta, 1e-9f)};
+    return pointOf(at(lanesOf(direction), p));
   }
 
   // A point of a cell with integral > 0, with pdf proportional to w, from two numbers in [0, 1).
   Point sample(int column, int row, float u, float v) const {
-    const Weights w = weights(probe_->corners(column, row), row);
-    Probe::Position p{column, row};
+    return pointOf(sample<float>(column, row, u, v));
+  }
+
+  // The same for one direction, or one point, in each lane.
+  template <class F>
+  struct PointOf {
+    Lanes3<F> direction, radiance;
+    F weight;
+  };
+  template <class F>
+  PointOf<F> at(const Lanes3<F>& direction, const Probe::PositionOf<F>& p) const {
+    const Probe::CornersOf<F> corners = probe_->cornersOf(p);
+    return at(direction, p, corners, weights(corners, p.row));
+  }
+  template <class F>
+  PointOf<F> sample(IntOf<F> column, IntOf<F> row, F u, F v) const {
+    Probe::PositionOf<F> p{column, row, {}, {}, {}};
+    const Probe::CornersOf<F> corners = probe_->cornersOf(p);
+    const Weights<F> w = weights(corners, row);
     p.t = sampleLinear(v, w.w00 + w.w10, w.w01 + w.w11);
     p.s = sampleLinear(u, (1 - p.t) * w.w00 + p.t * w.w01, (1 - p.t) * w.w10 + p.t * w.w11);
-    const vec3 direction = probe_->direction(p);
-    return at(direction, p);
+    const Lanes3<F> direction = probe_->directionAt(p);
+    return at(direction, p, corners, w);
   }
 
   // Solid angle = jacobian x sin(theta) x area in cells.
   double jacobian() const { return 2 * kPiD * kPiD / (double(probe_->width()) * probe_->height()); }
 
  private:
+  template <class F>
   struct Weights {
-    float w00, w10, w01, w11;
-    float at(float s, float t) const {
+    F w00, w10, w01, w11;
+    F at(F s, F t) const {
       return (1 - t) * ((1 - s) * w00 + s * w10) + t * ((1 - s) * w01 + s * w11);
     }
   };
-  Weights weights(const Probe::Corners& c, int row) const {
-    const float top = rowSine_[row], bottom = rowSine_[row + 1];
-    const auto weight = [&](const Rgb& radiance) {
-      return std::max(luminance(radiance) - offset_, 0.0f);
+  template <class F>
+  Weights<F> weights(const Probe::CornersOf<F>& c, IntOf<F> row) const {
+    const F top = LanesOf<F>::gather(rowSine_.data(), row),
+            bottom = LanesOf<F>::gather(rowSine_.data(), row + 1);
+    const auto weight = [&](const Lanes3<F>& radiance) {
+      return larger(luminance(radiance) - offset_, LanesOf<F>::splat(0));
     };
     return {weight(c.c00) * top, weight(c.c10) * top, weight(c.c01) * bottom,
             weight(c.c11) * bottom};
   }
 
-  // A number in [0, 1) with pdf proportional to a (1 - x) + b x. Divides by the greater of a and b
-  // because the squares of numbers outside 1e-19..1e19 exceed the range of a float.
-  static float sampleLinear(float u, float a, float b) {
-    const float greater = std::max(a, b);
-    if (!(greater > 0)) return u;
-    a /= greater, b /= greater;
-    const float root = std::sqrt(std::max(a * a + u * (b * b - a * a), 0.0f));
-    return std::min(u * (a + b) / std::max(a + root, std::numeric_limits<float>::min()),
-                    0x1.fffffep-1f);
+  template <class F>
+  static PointOf<F> at(const Lanes3<F>& direction, const Probe::PositionOf<F>& p,
+                       const Probe::CornersOf<F>& corners, const Weights<F>& w) {
+    return {direction, Probe::interpolate(corners, p.s, p.t),
+            w.at(p.s, p.t) / larger(p.sinTheta, LanesOf<F>::splat(1e-9f))};
+  }
+
+  static Point pointOf(const PointOf<float>& p) {
+    return {vectorOf(p.direction), vectorOf(p.radiance), p.weight};
+  }
+
+  // A number in [0, 1) with pdf proportional to a (1 - x) + b x; u if both are 0. Divides by the
+  // greater of a and b because the squares of numbers outside 1e-19..1e19 exceed the range of a
+  // float.
+  template <class F>
+  static F sampleLinear(F u, F a, F b) {
+    const F greater = larger(a, b), from = a / greater, to = b / greater;
+    const F root = LanesOf<F>::squareRoot(
+        larger(from * from + u * (to * to - from * from), LanesOf<F>::splat(0)));
+    const F x = smaller(
+        u * (from + to) / larger(from + root, LanesOf<F>::splat(std::numeric_limits<float>::min())),
+        LanesOf<F>::splat(0x1.fffffep-1f));
+    return greater > 0 ? x : u;
   }
 
   const Probe* probe_;

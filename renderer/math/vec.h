@@ -22,8 +22,55 @@ inline constexpr float kPi = 3.14159265358979323846f;
 inline constexpr float kInvPi = 1 / kPi;
 inline constexpr double kPiD = 3.14159265358979323846;
 
+// Arithmetic from one source for one number and for several at once: functions take F, a float or a
+// vector of lanes (math/lanes.h).
+template <class F>
+struct LanesOf;
+template <>
+struct LanesOf<float> {
+  using Int = int;
+  static constexpr int kCount = 1;
+
+  static float splat(float x) { return x; }  // the same number in each lane
+  static float squareRoot(float x) { return std::sqrt(x); }
+  static float magnitude(float x) { return std::fabs(x); }
+  static float floor(float x) { return std::floor(x); }
+  static float nearest(float x) { return std::nearbyint(x); }
+  static int toInt(float x) { return int(x); }  // rounded towards 0
+  static float toFloat(int x) { return float(x); }
+  static bool isNegative(float x) { return std::signbit(x); }  // a condition for ?:
+  static float withSignOf(float x, float sign) { return std::copysign(x, sign); }
+  static float gather(const float* p, int index) { return p[index]; }
+};
+template <class F>
+using IntOf = typename LanesOf<F>::Int;
+
+// As std::min and std::max, also for NaN: the first argument, unless the second one compares below
+// or above it.
+template <class F>
+F smaller(F a, F b) {
+  return b < a ? b : a;
+}
+template <class F>
+F larger(F a, F b) {
+  return a < b ? b : a;
+}
+
+// A vector, or a colour, in each lane.
+template <class F>
+struct Lanes3 {
+  F x, y, z;
+};
+
+inline Lanes3<float> lanesOf(const vec3& v) { return {v.x, v.y, v.z}; }
+inline vec3 vectorOf(const Lanes3<float>& v) { return {v.x, v.y, v.z}; }
+
 inline float luminance(const Rgb& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 inline double luminance(const glm::dvec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+template <class F>
+F luminance(const Lanes3<F>& c) {
+  return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+}
 inline float maxComponent(const Rgb& c) { return std::max(c.x, std::max(c.y, c.z)); }
 // glm::abs branches on the sign of each component.
 inline vec3 absolute(const vec3& v) { return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}; }
@@ -73,26 +120,27 @@ inline glm::dvec3 unitOrZero(const glm::dvec3& v) {
 // 16k probe is 6e-5). NaN propagates.
 
 // Sine and cosine of an angle in turns; absolute error below 2e-7 for |turns| <= 1.
-inline void sinCosTurns(float turns, float& sine, float& cosine) {
-  const float quadrant = std::nearbyint(4 * turns);
-  const float r = turns - 0.25f * quadrant;  // exact, in [-1/8, 1/8]
-  const float s = r * r;
-  const float sinR = r * (6.28318529f + s * (-41.3416626f + s * (81.5925429f + s * -75.4016127f)));
-  const float cosR =
-      1 + s * (-19.7392087f + s * (64.9393161f + s * (-85.4428446f + s * 59.2201690f)));
-  const int q = int(quadrant);
-  const float a = q & 1 ? cosR : sinR, b = q & 1 ? sinR : cosR;
-  sine = q & 2 ? -a : a;
-  cosine = (q + 1) & 2 ? -b : b;
+template <class F>
+void sinCosTurns(F turns, F& sine, F& cosine) {
+  const F quadrant = LanesOf<F>::nearest(4 * turns);
+  const F r = turns - 0.25f * quadrant;  // exact, in [-1/8, 1/8]
+  const F s = r * r;
+  const F sinR = r * (6.28318529f + s * (-41.3416626f + s * (81.5925429f + s * -75.4016127f)));
+  const F cosR = 1 + s * (-19.7392087f + s * (64.9393161f + s * (-85.4428446f + s * 59.2201690f)));
+  const IntOf<F> q = LanesOf<F>::toInt(quadrant);
+  const F a = (q & 1) != 0 ? cosR : sinR, b = (q & 1) != 0 ? sinR : cosR;
+  sine = (q & 2) != 0 ? -a : a;
+  cosine = ((q + 1) & 2) != 0 ? -b : b;
 }
 
 // atan2(y, x) in turns, [-1/2, 1/2]; 0 for (0, 0).
-inline float atan2Turns(float y, float x) {
-  const float ax = std::fabs(x), ay = std::fabs(y);
-  const float high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
-  const float q = high > 0 ? low / high : high;
-  const float s = q * q;
-  float turns =
+template <class F>
+F atan2Turns(F y, F x) {
+  const F ax = LanesOf<F>::magnitude(x), ay = LanesOf<F>::magnitude(y);
+  const F high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
+  const F q = high > 0 ? low / high : high;
+  const F s = q * q;
+  F turns =
       q *
       (0.159154924f +
        s * (-0.0530492275f +
@@ -100,9 +148,9 @@ inline float atan2Turns(float y, float x) {
                  s * (-0.0222869285f +
                       s * (0.0157067872f +
                            s * (-0.00936304601f + s * (0.00378478708f + s * -0.000725713434f)))))));
-  if (ay > ax) turns = 0.25f - turns;
-  if (std::signbit(x)) turns = 0.5f - turns;
-  return std::copysign(turns, y);
+  turns = ay > ax ? 0.25f - turns : turns;
+  turns = LanesOf<F>::isNegative(x) ? 0.5f - turns : turns;
+  return LanesOf<F>::withSignOf(turns, y);
 }
 
 }  // namespace chromeball

@@ -27,15 +27,26 @@ class MapTurn {
   // The turned map's u minus the map's own, in turns, [0, 1).
   float uShift() const { return uShift_; }
   // Converts to and from the frame in which the map is shifted by uShift().
-  vec3 toMap(const vec3& d) const {
-    if (isTilted_) [[unlikely]]
-      return d * toWorld_;  // the transpose
-    return d;
+  template <class F>
+  Lanes3<F> toMap(const Lanes3<F>& d) const {
+    if (!isTilted_) [[likely]]
+      return d;
+    const auto along = [&](int axis) {  // the transpose
+      const vec3& m = toWorld_[axis];
+      return m.x * d.x + m.y * d.y + m.z * d.z;
+    };
+    return {along(0), along(1), along(2)};
   }
-  vec3 toWorld(const vec3& d) const {
-    if (isTilted_) [[unlikely]]
-      return toWorld_ * d;
-    return d;
+  vec3 toMap(const vec3& d) const { return vectorOf(toMap(lanesOf(d))); }
+  vec3 toWorld(const vec3& d) const { return vectorOf(toWorld(lanesOf(d))); }
+  template <class F>
+  Lanes3<F> toWorld(const Lanes3<F>& d) const {
+    if (!isTilted_) [[likely]]
+      return d;
+    const auto component = [&](int i) {
+      return toWorld_[0][i] * d.x + toWorld_[1][i] * d.y + toWorld_[2][i] * d.z;
+    };
+    return {component(0), component(1), component(2)};
   }
 
  private:
@@ -69,13 +80,19 @@ class Probe {
   }
 
   // A position in the map: the cell, (s, t) in [0, 1]^2 inside it, and the sine of the polar angle.
-  struct Position {
-    int column, row;
-    float s, t;
-    float sinTheta;
+  template <class F>
+  struct PositionOf {
+    IntOf<F> column, row;
+    F s, t;
+    F sinTheta;
   };
-  Position locate(const vec3& direction) const;
-  vec3 direction(Position& position) const;  // sets position.sinTheta
+  using Position = PositionOf<float>;
+  template <class F>
+  PositionOf<F> locate(const Lanes3<F>& direction) const;
+  template <class F>
+  Lanes3<F> directionAt(PositionOf<F>& position) const;  // sets position.sinTheta
+  Position locate(const vec3& d) const { return locate(lanesOf(d)); }
+  vec3 direction(Position& position) const { return vectorOf(directionAt(position)); }
 
   // Radiance at the corners of a cell: c10 at column + 1, c01 at row + 1.
   struct Corners {
@@ -86,6 +103,13 @@ class Probe {
     const Rgb* bottom = top + width_ + 1;
     return {top[0], top[1], bottom[0], bottom[1]};
   }
+  // The same for each lane.
+  template <class F>
+  struct CornersOf {
+    Lanes3<F> c00, c10, c01, c11;
+  };
+  template <class F>
+  CornersOf<F> cornersOf(const PositionOf<F>& p) const;
   // Fetches into the cache what corners() reads.
   void prefetch(int column, int row) const {
     const Rgb* top = &grid_[size_t(row) * (width_ + 1) + column];
@@ -94,6 +118,14 @@ class Probe {
   }
   static Rgb interpolate(const Corners& c, float s, float t) {
     return (1 - t) * ((1 - s) * c.c00 + s * c.c10) + t * ((1 - s) * c.c01 + s * c.c11);
+  }
+  template <class F>
+  static Lanes3<F> interpolate(const CornersOf<F>& c, F s, F t) {
+    const auto mix = [&](F c00, F c10, F c01, F c11) {
+      return (1 - t) * ((1 - s) * c00 + s * c10) + t * ((1 - s) * c01 + s * c11);
+    };
+    return {mix(c.c00.x, c.c10.x, c.c01.x, c.c11.x), mix(c.c00.y, c.c10.y, c.c01.y, c.c11.y),
+            mix(c.c00.z, c.c10.z, c.c01.z, c.c11.z)};
   }
 
   // Radiance arriving from `direction` (unit, pointing away from the scene).
@@ -109,47 +141,64 @@ class Probe {
   std::vector<Rgb> grid_;  // (H + 2) rows of W + 1 corners; the last column repeats the first
 };
 
-inline Probe::Position Probe::locate(const vec3& direction) const {
-  const vec3 d = turn_.toMap(direction);
-  const float sinTheta = std::sqrt(d.x * d.x + d.z * d.z);
-  float u = 0.5f + atan2Turns(d.x, -d.z) - turn_.uShift();
-  u -= std::floor(u);
-  const float v = 2 * atan2Turns(sinTheta, d.y);
+template <class F>
+Probe::PositionOf<F> Probe::locate(const Lanes3<F>& direction) const {
+  const Lanes3<F> d = turn_.toMap(direction);
+  const F sinTheta = LanesOf<F>::squareRoot(d.x * d.x + d.z * d.z);
+  F u = 0.5f + atan2Turns(d.x, -d.z) - turn_.uShift();
+  u -= LanesOf<F>::floor(u);
+  const F v = 2 * atan2Turns(sinTheta, d.y);
 
-  Position p;
+  PositionOf<F> p;
   p.sinTheta = sinTheta;
   // Column 0's centre lies at u = 0.5 / W.
-  float x = u * float(width_) - 0.5f;
-  if (x < 0) x += float(width_);
+  F x = u * float(width_) - 0.5f;
+  x = x < 0 ? x + float(width_) : x;
   // Clamped on both sides, a NaN to 0: its direction must give NaN and not read outside the map.
-  const auto cell = [](float at, int last) {
-    return int(std::min(std::max(0.0f, at), float(last)));
+  const auto cell = [](F at, int last) {
+    return LanesOf<F>::toInt(
+        smaller(larger(LanesOf<F>::splat(0), at), LanesOf<F>::splat(float(last))));
   };
   p.column = cell(x, width_ - 1);
-  p.s = x - float(p.column);
-  const float y = v * float(height_) + 0.5f;  // corner rows 1..H at whole numbers
+  p.s = x - LanesOf<F>::toFloat(p.column);
+  const F y = v * float(height_) + 0.5f;  // corner rows 1..H at whole numbers
   p.row = cell(y, height_);
-  p.t = y - float(p.row);
-  if (p.row == 0)
-    p.t = 2 * y - 1;  // from the pole at y = 1/2
-  else if (p.row == height_)
-    p.t *= 2;
+  p.t = y - LanesOf<F>::toFloat(p.row);
+  // From the pole at y = 1/2 in the first row.
+  p.t = p.row == 0 ? 2 * y - 1 : p.row == height_ ? 2 * p.t : p.t;
   return p;
 }
 
-inline vec3 Probe::direction(Position& p) const {
-  const float x = float(p.column) + p.s + 0.5f;
-  float y = float(p.row) + p.t - 0.5f;
-  if (p.row == 0)
-    y = 0.5f * p.t;
-  else if (p.row == height_)
-    y = float(height_) - 0.5f + 0.5f * p.t;
-  float sinPhi, cosPhi, cosTheta;
+template <class F>
+Lanes3<F> Probe::directionAt(PositionOf<F>& p) const {
+  const F x = LanesOf<F>::toFloat(p.column) + p.s + 0.5f;
+  F y = LanesOf<F>::toFloat(p.row) + p.t - 0.5f;
+  y = p.row == 0 ? 0.5f * p.t : p.row == height_ ? float(height_) - 0.5f + 0.5f * p.t : y;
+  F sinPhi, cosPhi, cosTheta;
   sinCosTurns(x / float(width_) + turn_.uShift(), sinPhi, cosPhi);
   sinCosTurns(0.5f * y / float(height_), p.sinTheta, cosTheta);
-  p.sinTheta = std::max(p.sinTheta, 0.0f);
+  p.sinTheta = larger(p.sinTheta, LanesOf<F>::splat(0));
   // u = 1/2 shows -Z: x = sin(2 pi (u - 1/2)) = -sin(2 pi u), z = -cos(2 pi (u - 1/2)).
-  return turn_.toWorld({-p.sinTheta * sinPhi, cosTheta, p.sinTheta * cosPhi});
+  return turn_.toWorld(Lanes3<F>{-p.sinTheta * sinPhi, cosTheta, p.sinTheta * cosPhi});
+}
+
+template <class F>
+Probe::CornersOf<F> Probe::cornersOf(const PositionOf<F>& p) const {
+  if constexpr (LanesOf<F>::kCount == 1) {
+    const Corners c = corners(p.column, p.row);
+    return {lanesOf(c.c00), lanesOf(c.c10), lanesOf(c.c01), lanesOf(c.c11)};
+  } else {
+    CornersOf<F> result;
+    for (int k = 0; k < LanesOf<F>::kCount; ++k) {
+      const Corners c = corners(p.column[k], p.row[k]);
+      const auto set = [k](Lanes3<F>& lanes, const Rgb& rgb) {
+        lanes.x[k] = rgb.x, lanes.y[k] = rgb.y, lanes.z[k] = rgb.z;
+      };
+      set(result.c00, c.c00), set(result.c10, c.c10);
+      set(result.c01, c.c01), set(result.c11, c.c11);
+    }
+    return result;
+  }
 }
 
 }  // namespace chromeball

@@ -136,6 +136,7 @@ void replaceModels(RenderDescription& description, LoadedScene& loaded, ModelCac
 
 LoadedScene loadScene(const RenderDescription& given, ModelCache* shared,
                       const AutomaticView* view) {
+  checkNumbers(given);
   checkCapabilities(given);
   RenderDescription description = given;
   ModelCache own;

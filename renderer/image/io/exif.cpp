@@ -21,6 +21,9 @@ enum Tag : uint16_t {
   kFNumber = 0x829d,
   kExifDirectory = 0x8769,
   kPhotographicSensitivity = 0x8827,
+  kStandardOutputSensitivity = 0x8831,
+  kRecommendedExposureIndex = 0x8832,
+  kIsoSpeed = 0x8833,
   kColorSpace = 0xa001,
   kFocalLengthIn35mmFilm = 0xa405
 };
@@ -52,10 +55,20 @@ std::optional<double> findExif(const TiffBlock& block, Tag tag) {
   return block.find(uint64_t(*pointer), tag);
 }
 
+// PhotographicSensitivity has 16 bits; its largest number refers to the other tags (EXIF 2.3,
+// table 8).
+std::optional<double> sensitivityOf(const TiffBlock& block) {
+  constexpr double kOrHigher = 65535;
+  const std::optional<double> stated = findExif(block, kPhotographicSensitivity);
+  if (stated && *stated < kOrHigher) return stated;
+  for (const Tag tag : {kIsoSpeed, kRecommendedExposureIndex, kStandardOutputSensitivity})
+    if (const std::optional<double> found = findExif(block, tag)) return found;
+  return stated;
+}
+
 Exif parse(const TiffBlock& block) {
   const auto find = [&](Tag tag) { return findExif(block, tag); };
-  return {find(kExposureTime), find(kFNumber), find(kPhotographicSensitivity),
-          find(kFocalLengthIn35mmFilm)};
+  return {find(kExposureTime), find(kFNumber), sensitivityOf(block), find(kFocalLengthIn35mmFilm)};
 }
 
 Exif fromAttributes(const Metadata& metadata) {

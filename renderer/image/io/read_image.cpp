@@ -234,7 +234,8 @@ std::vector<uint8_t> withPictureFirst(std::vector<uint8_t> bytes, const fs::path
 
 ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   ImageFile file;
-  const std::vector<uint8_t> bytes = withPictureFirst(readFile(path), path, file.messages);
+  const std::vector<uint8_t> bytes =
+      withStripsInside(withPictureFirst(readFile(path), path, file.messages));
   const std::unique_ptr<ModuleImage> image = openModuleImage("tiff", bytes, path);
   const ModuleImageHeader& header = image->header();
   file.channels = header.channels;

@@ -122,12 +122,22 @@ std::span<const uint8_t> TiffBlock::bytes(uint64_t directory, uint16_t tag) cons
   return bytes_.subspan(at, count);
 }
 
+std::vector<uint8_t> TiffBlock::changed(uint64_t at, uint64_t count, uint64_t value) const {
+  std::vector<uint8_t> bytes(bytes_.begin(), bytes_.end());
+  for (uint64_t i = 0; i < count && at + i < bytes.size(); ++i)
+    bytes[at + i] = uint8_t(value >> 8 * (bigEndian_ ? count - 1 - i : i));
+  return bytes;
+}
+
 std::vector<uint8_t> TiffBlock::withFirstDirectory(uint64_t directory) const {
-  std::vector<uint8_t> changed(bytes_.begin(), bytes_.end());
-  const uint64_t count = offsetBytes();
-  for (uint64_t i = 0; i < count; ++i)
-    changed[firstDirectoryAt() + i] = uint8_t(directory >> 8 * (bigEndian_ ? count - 1 - i : i));
-  return changed;
+  return changed(firstDirectoryAt(), offsetBytes(), directory);
+}
+
+// A single value is in its entry.
+std::vector<uint8_t> TiffBlock::withInteger(uint64_t directory, uint16_t tag,
+                                            uint64_t value) const {
+  const uint64_t entry = entryOf(directory, tag).value();
+  return changed(entry + 4 + offsetBytes(), integerBytes(number(entry + 2, 2)), value);
 }
 
 namespace {

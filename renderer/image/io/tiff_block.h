@@ -34,6 +34,9 @@ class TiffBlock {
   // The value of an entry of bytes; empty if there is none.
   std::span<const uint8_t> bytes(uint64_t directory, uint16_t tag) const;
 
+  // The bytes of the block with another first value of an entry of integers, which exists.
+  std::vector<uint8_t> withInteger(uint64_t directory, uint16_t tag, uint64_t value) const;
+
   // The bytes of the block with another directory as the first.
   std::vector<uint8_t> withFirstDirectory(uint64_t directory) const;
 
@@ -44,6 +47,7 @@ class TiffBlock {
   uint64_t entryBytes() const { return isBig_ ? 20 : 12; }
   uint64_t number(uint64_t at, uint64_t count) const;
   uint64_t entriesOf(uint64_t directory) const;
+  std::vector<uint8_t> changed(uint64_t at, uint64_t count, uint64_t value) const;
   std::optional<uint64_t> entryOf(uint64_t directory, uint16_t tag) const;
 
   std::span<const uint8_t> bytes_;

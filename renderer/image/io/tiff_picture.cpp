@@ -23,10 +23,14 @@ enum PictureTag : uint16_t {
   kPhotometric = 262,
   kStripOffsets = 273,
   kSamplesPerPixel = 277,
+  kRowsPerStrip = 278,
   kStripLengths = 279,
+  kTileWidth = 322,
+  kTileLength = 323,
   kTileOffsets = 324,
   kTileLengths = 325,
   kSubDirectories = 330,
+  kTileDepth = 32998,
   kDngVersion = 50706
 };
 
@@ -142,11 +146,19 @@ void checkRatio(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
     return values.empty() ? 1 : double(std::ranges::max(values));
   };
   const double width = number(kWidth), height = number(kHeight);
-  const double bytes = width * height * number(kSamplesPerPixel) * number(kBitsPerSample) / 8;
+  const double texel = number(kSamplesPerPixel) * number(kBitsPerSample) / 8;
+  const double bytes = width * height * texel;
   const auto compression = int(std::min(number(kCompression), 65535.0));
   if (bytes > std::max(kAlwaysAllowed, double(fileBytes) * maxRatioOf(compression, width)))
     throw std::runtime_error(
         fmt::format("the file is too short for {} x {} texels", width, height));
+  // A tile may be larger than a small image, and is decoded as a whole.
+  const double tileWidth = number(kTileWidth), tileLength = number(kTileLength);
+  if (tileWidth * tileLength * texel > std::max(kAlwaysAllowed, bytes) || number(kTileDepth) != 1 ||
+      tileWidth < 1 || tileLength < 1)
+    throw std::runtime_error(
+        fmt::format("its tiles of {} x {} texels do not fit its image of {} x {}", tileWidth,
+                    tileLength, width, height));
 }
 
 }  // namespace
@@ -183,6 +195,15 @@ uint64_t pictureDirectory(std::span<const uint8_t> file) {
   checkWhole(tiff, picture, file.size());
   checkRatio(tiff, picture, file.size());
   return picture;
+}
+
+std::vector<uint8_t> withStripsInside(std::vector<uint8_t> file) {
+  const TiffBlock tiff(file);
+  const uint64_t directory = tiff.firstDirectory();
+  const std::vector<uint64_t> rows = tiff.integers(directory, kRowsPerStrip),
+                              height = tiff.integers(directory, kHeight);
+  if (rows.size() != 1 || height.size() != 1 || rows[0] <= height[0]) return file;
+  return tiff.withInteger(directory, kRowsPerStrip, height[0]);
 }
 
 namespace {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "image/chromaticities.h"
 
@@ -17,6 +18,10 @@ namespace chromeball {
 // show: camera files, which hold the numbers of a sensor and a thumbnail; masks alone; LogLuv,
 // which it clips to 8 bits; truncated files, and files too short for what they claim to hold.
 uint64_t pictureDirectory(std::span<const uint8_t> tiff);
+
+// The file with RowsPerStrip no larger than its first image, where it may be any number (TIFF 6.0)
+// and OpenImageIO's calculations exceed an int.
+std::vector<uint8_t> withStripsInside(std::vector<uint8_t> file);
 
 // The primaries that a TIFF's first image states (TIFF 6.0, section 20: WhitePoint and
 // PrimaryChromaticities); Rec. 709's for the one that it leaves out, nullopt if it states neither.

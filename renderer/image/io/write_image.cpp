@@ -110,6 +110,9 @@ Messages writeInWindow(const fs::path& path, OutputImage output, const fs::path&
 
 Messages writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
   checkWritable(path);
+  if (color.channels != 1 && color.channels != 3 && color.channels != 4)
+    throwInput("{}: an image of {} channels is no colour; it needs 1, 3 or 4", path.string(),
+               color.channels);
   if (extension(path) != ".exr") return writeColor(path, color, transform);
   const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
   writeExr(path, OutputImage{{{"", letters, color}}, {}, {}, {}});

@@ -71,24 +71,27 @@ std::vector<int> uvSetsOf(const Material& material) {
   return {sets.begin(), sets.end()};
 }
 
+void checkShape(const Mesh& mesh, const std::string& location) {
+  const size_t vertices = mesh.positions.size();
+  checkTriangles(mesh, location + "triangles");
+  checkLength(mesh.normals, vertices, location + "normals");
+  checkLength(mesh.tangents, vertices, location + "tangents");
+  checkLength(mesh.colors, vertices, location + "colors");
+  for (size_t set = 0; set < mesh.uvs.size(); ++set)
+    checkLength(mesh.uvs[set], vertices, fmt::format("{}uvs[{}]", location, set));
+}
+
 void checkMesh(const Mesh& mesh, const Material& material, const std::string& location) {
   const size_t vertices = mesh.positions.size();
   const auto named = [&](const std::string& array) { return location + array; };
-  const auto check = [&](const auto& array, const std::string& name) {
-    checkLength(array, vertices, named(name));
-    checkFinite(array, named(name));
-  };
-  check(mesh.positions, "positions");
-  checkTriangles(mesh, named("triangles"));
-  // Normals and tangents that are not finite are repaired.
-  checkLength(mesh.normals, vertices, named("normals"));
-  checkLength(mesh.tangents, vertices, named("tangents"));
-  check(mesh.colors, "colors");
+  checkFinite(mesh.positions, named("positions"));
+  checkShape(mesh, location);  // normals and tangents that are not finite are repaired
+  checkFinite(mesh.colors, named("colors"));
   for (size_t i = 0; i < mesh.colors.size(); ++i)
     if (glm::any(glm::lessThan(mesh.colors[i], vec4(0))))
       throwInput("{}[{}]: is negative", named("colors"), i);
   for (size_t set = 0; set < mesh.uvs.size(); ++set)
-    check(mesh.uvs[set], fmt::format("uvs[{}]", set));
+    checkFinite(mesh.uvs[set], named(fmt::format("uvs[{}]", set)));
   for (const int set : setsOfTextures(material))
     if (vertices > 0 && !hasSet(mesh, set))
       throwInput("{}: is missing, which the material \"{}\" uses",

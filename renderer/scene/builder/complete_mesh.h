@@ -18,6 +18,9 @@ std::vector<int> uvSetsOf(const Material& material);
 // that do not exist, UV sets of the material's textures that are missing.
 void checkMesh(const Mesh& mesh, const Material& material, const std::string& location);
 
+// A part of it: the lengths of the vertex arrays, and the vertices of the triangles.
+void checkShape(const Mesh& mesh, const std::string& location);
+
 // Repairs the normals and tangents of a mesh that checkMesh() accepts, drops vertices that no
 // triangle uses, and colours that are all white, and computes the tangents that the material needs
 // (flat normals too, for a normal map on a mesh that has none). Without UV coordinates, an

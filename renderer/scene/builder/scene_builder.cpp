@@ -124,6 +124,9 @@ int SceneBuilder::addMesh(Mesh mesh, int material) {
 }
 
 int SceneBuilder::addMesh(MeshList::Shared mesh) {
+  const std::string location = fmt::format("mesh {}: ", scene_.meshes.size());
+  if (!mesh) throwInput("{}is null", location);
+  checkShape(*mesh, location);
   scene_.meshes.push_back(std::move(mesh));
   return int(scene_.meshes.size()) - 1;
 }
@@ -158,6 +161,11 @@ void SceneBuilder::addLight(const PunctualLight& light) {
   checkDirection("light", light.name, light.direction);
   if (!isFinite(light.position) || !(light.range > 0))
     throwInput("light \"{}\": its position must be finite, and its range above 0", light.name);
+  const bool isSpot = light.kind == PunctualLight::Kind::Spot;
+  if (isSpot &&
+      !(light.innerCone >= 0 && light.innerCone <= light.outerCone && light.outerCone <= 2))
+    throwInput("light \"{}\": its cones must be from 0 to 2, the inner one within the outer",
+               light.name);
   if (light.node != -1) checkIndex("node", light.node, scene_.nodeNames.size());
   scene_.lights.push_back(light);
 }

@@ -45,7 +45,8 @@ class SceneBuilder {
   // materials may use it if they need no further arrays. Without triangles, its vertices are taken
   // in threes.
   int addMesh(Mesh mesh, int material);
-  // The same for a mesh whose arrays are complete.
+  // The same for a mesh whose arrays are complete, and finite; only their lengths and the vertices
+  // of the triangles are checked.
   int addMesh(MeshList::Shared mesh);
 
   // Without a transform, the mesh is in world space: rays are faster in one that has no other

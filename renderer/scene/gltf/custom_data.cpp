@@ -51,6 +51,7 @@ CustomData readCustomData(const std::string& path, const std::string& prefix,
                           ExternalFiles external) {
   GltfFile file(path, external);
   decodeMeshopt(file);
+  decodeDraco(file);
   CustomData data;
   readExtras(file, data);
   for (size_t i = 0; i < file.model.nodes.size(); ++i) {

@@ -42,6 +42,9 @@ class InstanceReader {
   }
 
  private:
+  // Of each primitive of each node, in the budget of the file: plans, and recipes.
+  static constexpr size_t kBytesPerPrimitive = 64, kBytesPerTarget = 64;
+
   struct Geometry {
     int users = 0;
     int mesh = -1;  // index in the scene, once read; used if there are several users
@@ -66,6 +69,7 @@ class InstanceReader {
       const tinygltf::Primitive& primitive = mesh.primitives[i];
       const bool skinned = isSkinned(primitive, pose);
       const std::string at = describe(node.mesh, i);
+      file_.spend(kBytesPerPrimitive + kBytesPerTarget * primitive.targets.size());
       if (!hasTriangles(file_, primitive, at) || !(skinned || !transforms.empty())) continue;
       file_.spend((sizeof(Plan) + sizeof(Instance)) * std::max<size_t>(transforms.size(), 1));
       const int material = materials_.use(primitive.material, at + ".material");
@@ -93,11 +97,14 @@ class InstanceReader {
                          moves(plan));
   }
 
-  bool moves(const Plan& plan) const {
+  bool moves(const Plan& plan) {
     const auto moves = [&](int node) { return bool(tree_.moves[size_t(node)]); };
+    if (moves(plan.node)) return true;
+    if (plan.geometry) return false;
     const int skin = file_.model.nodes[size_t(plan.node)].skin;
-    return moves(plan.node) ||
-           (!plan.geometry && std::ranges::any_of(file_.model.skins[size_t(skin)].joints, moves));
+    const auto [found, isNew] = skinMoves_.try_emplace(skin);
+    if (isNew) found->second = std::ranges::any_of(file_.model.skins[size_t(skin)].joints, moves);
+    return found->second;
   }
 
   // Adds a mesh, of an earlier load if there is one, to the scene, transformed by `transform`
@@ -194,6 +201,7 @@ class InstanceReader {
   std::vector<Plan> plans_;
   std::map<MeshRecipe, Geometry> geometries_;
   std::map<int, std::vector<dmat4>> jointsOf_;  // by skin
+  std::map<int, bool> skinMoves_;               // by skin
 };
 
 }  // namespace

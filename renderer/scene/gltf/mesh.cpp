@@ -150,7 +150,8 @@ MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose,
       .uvSets = {},
       .tangentSpace = {},
       .hasAlpha = material.alphaMode != AlphaMode::Opaque || passesStraight(material)};
-  if (!primitive.targets.empty()) recipe.weights.assign(pose.weights.begin(), pose.weights.end());
+  const auto weights = std::min(primitive.targets.size(), pose.weights.size());
+  recipe.weights.assign(pose.weights.begin(), pose.weights.begin() + ptrdiff_t(weights));
   recipe.uvSets = uvSetsOf(material);
   if (const std::optional<TextureSlot> slot = tangentSpace(material)) {
     recipe.tangentSpace.push_back(uint32_t(slot->uvSet));
