@@ -22,7 +22,7 @@ TEST(Trig, agreesWithTheStandardLibrary) {
       ASSERT_NEAR(atan2Turns(y, x), std::atan2(double(y), double(x)) / (2 * kPiD), 6e-8);
     }
   }
-  EXPECT_EQ(atan2Turns(0, 0), 0);
+  EXPECT_EQ(atan2Turns(0.0f, 0.0f), 0);
   EXPECT_TRUE(std::isnan(atan2Turns(NAN, 1.0f)));
 }
 

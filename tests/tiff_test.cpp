@@ -2,9 +2,8 @@
 // The image of a TIFF that is read, its orientation, and the files that are refused.
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include <cstring>
+#include <fstream>
 
 #include "base/error.h"
 #include "icc_file.h"
