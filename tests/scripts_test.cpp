@@ -241,5 +241,32 @@ TEST_F(SlowLintSelection, TheLintedCommitIsNear) {
   EXPECT_NE(cut.error.find("git fetch --unshallow"), std::string::npos) << cut.error;
 }
 
+// The part of docs/capture.md about real photographs.
+TEST(SlowCaptureTutorial, WritesItsRecordIntoAnotherFolder) {
+  const TemporaryFolder folder;
+  const std::string photographs = "data/reference/differential_rendering/kartikagrawal27/Materials";
+  std::filesystem::create_directories(folder / photographs);
+  std::filesystem::create_directories(folder / "out");
+  std::ofstream(folder / "stubs.py")
+      << "import pathlib, sys, types\n"
+         "import course, light, main, plate\n"
+         "class Run:\n"
+         "    def __init__(self, scratch, pictures):\n"
+         "        self.scratch = scratch\n"
+         "main.Run, main.Photographs, main.page = Run, lambda run: None, lambda *parts: 'page'\n"
+         "light.steps = plate.steps = lambda *arguments: []\n"
+         "course.exposures = lambda run: ['made']\n"
+         "course.ball = course.camera = course.composite = lambda run: []\n"
+         "course.merged = lambda run, folder: []\n"
+         "course.RECORD = pathlib.Path('course_record.md').resolve()\n"
+         "main.main()\n";
+  const std::string scripts = std::string(kSourceDir) + "/tools/scripts/",
+                    run = "cd '" + folder / "" + "' && CHROMEBALL_DATA=data PYTHONPATH=" + scripts +
+                          "shared:" + scripts + "capture_tutorial PYTHONDONTWRITEBYTECODE=1 ";
+  ASSERT_EQ(std::system((run + "python3 stubs.py --out out > /dev/null").c_str()), 0);
+  EXPECT_EQ(fileContents(folder / "out/course_record.md"), "made\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "course_record.md"));
+}
+
 }  // namespace
 }  // namespace scripts_test
