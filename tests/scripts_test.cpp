@@ -268,5 +268,21 @@ TEST(SlowCaptureTutorial, WritesItsRecordIntoAnotherFolder) {
   EXPECT_FALSE(std::filesystem::exists(folder / "course_record.md"));
 }
 
+// In the first lines of code of docs/farm.md.
+TEST(FarmPage, MergesNoPartialFiles) {
+  const TemporaryFolder folder;
+  for (const char* file : {"part-1.exr", "part-1.partial.exr", "part-2.exr"})
+    std::ofstream(folder / file) << "";
+  std::string page = fileContents(std::string(kSourceDir) + "/docs/farm.md");
+  const size_t from = page.find("chromeball merge ") + 17, to = page.find(" -o", from);
+  ASSERT_LT(to, page.size());
+  std::string list = page.substr(from, to - from);
+  list.replace(list.find('N'), 1, "2");
+  std::ofstream(folder / "list.sh") << "echo " + list;
+  const std::string line = "cd '" + folder / "" + "' && bash list.sh > out";
+  ASSERT_EQ(std::system(line.c_str()), 0);
+  EXPECT_EQ(fileContents(folder / "out"), "part-1.exr part-2.exr\n");
+}
+
 }  // namespace
 }  // namespace scripts_test
