@@ -161,6 +161,16 @@ TEST(Stitch, TilesThatDoNotOverlapAreRefused) {
   EXPECT_THROW(refinePoses(tiles), InputError) << "a constant place determines no pose";
 }
 
+TEST(Stitch, ASingleTileHasNoPoseToRefine) {
+  const Probe place(gradientProbe({64, 32}, Rgb(1), {0.5, 0.3, -0.6}));
+  std::vector<Tile> tiles{photograph(place, Rotation(30), 50, 100, 100)};
+  const PoseRefinement refinement = refinePoses(tiles);
+  EXPECT_EQ(refinement.turns, std::vector<double>{0});
+  EXPECT_EQ(refinement.before, 0);
+  EXPECT_EQ(refinement.after, 0);
+  EXPECT_EQ(tiles[0].pose, Rotation(30));
+}
+
 class CommandStitch : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return folder_ / name; }
@@ -203,6 +213,20 @@ TEST_F(CommandStitch, ReadsAListAndWritesRefinedPoses) {
   EXPECT_EQ(again.status, 0) << again.error;
   const Image a = readImage(path("out.exr")), b = readImage(path("again.exr"));
   for (size_t i = 0; i < a.texels.size(); ++i) ASSERT_NEAR(a.texels[i], b.texels[i], 1e-4f);
+}
+
+TEST_F(CommandStitch, RefinesASingleTileToItself) {
+  const Probe place(studio());
+  writeImage(path("n.exr"), photograph(place, Rotation(), 50, 32, 32).image);
+  const std::string tile = list("fov = 50\n[[tile]]\nfile = 'n.exr'\nyaw = 0\n");
+  std::vector<std::string> words{"probe", "stitch", tile, "-o", path("plain.exr")};
+  ASSERT_EQ(runCommand(words).status, 0);
+  words.back() = path("refined.exr");
+  words.push_back("--refine");
+  const CommandResult refined = runCommand(words);
+  ASSERT_EQ(refined.status, 0) << refined.error;
+  EXPECT_EQ(refined.out.find("overlaps"), std::string::npos) << refined.out;
+  EXPECT_EQ(readImage(path("plain.exr")).texels, readImage(path("refined.exr")).texels);
 }
 
 TEST_F(CommandStitch, WrongListsAreExplained) {
