@@ -246,6 +246,14 @@ TEST_F(CommandStitch, WrongListsAreExplained) {
   refuse("fov = 50\n[[tile]]\nfile = 'a.exr'\nyav = 3\n", "tiles.toml:4: unknown key `yav`; ");
   refuse("fov = 50\n[[tile]]\nfile = 'a.exr'\n[[tile]]\nfile = 'a.exr'\nyaw = 90\n",
          "a.exr: is not connected to ");
+  writeImage(path("black.exr"), constantProbe({8, 8}, Rgb(0)));
+  const std::string black = "[[tile]]\nfile = 'black.exr'\n", overlapping = "yaw = 20\n";
+  constexpr const char* kBlack =
+      "where they overlap, one or both are black; if all have the same exposure, give "
+      "--same-exposure";
+  refuse("fov = 50\n" + black + black + overlapping, kBlack);
+  refuse("fov = 50\n[[tile]]\nfile = 'a.exr'\n" + black + overlapping, kBlack);
+  refuse("fov = 50\n" + black + "[[tile]]\nfile = 'a.exr'\n" + overlapping, kBlack);
   expectError(
       {"probe", "stitch", list("fov = 50\n[[tile]]\nfile = 'a.exr'\n"), "-o", path("a.exr")},
       "a.exr");
