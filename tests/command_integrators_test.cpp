@@ -270,6 +270,8 @@ TEST_F(CommandIntegrators, RelightByAProbe) {
   expectError(relight({"--probe", folder_ / "none.exr"}), "none.exr");
   expectError(relight({"--probe", probe, "--scale", "-1"}), "--scale");
   expectError(relight({"--probe", probe, "--exposure", "nan"}), "--exposure");
+  expectError(relight({"--probe", probe, "--exposure", "3"}), "--exposure: is for a .png");
+  expectError(relight({"--probe", probe, "--tonemap", "aces"}), "--tonemap: is for a .png");
   expectError(relight({"--probe", probe, "--add", probe}), "pixels");
   expectError({"image", "relight", probe, "--probe", probe, "-o", out}, "albedo");
   EXPECT_FALSE(std::filesystem::exists(out));

@@ -277,6 +277,21 @@ TEST(LightGroups, RefuseWhatTheyCannotDo) {
   };
   expectError(relight("lmap=2"), "`lamp`");
   expectError(relight("2"), "NAME=GAIN");
+  for (const Strings& option : {Strings{"--bent"},
+                                {"--suns"},
+                                {"--add", scene / "o.exr"},
+                                {"--rotation", "30"},
+                                {"--scale", "3"},
+                                {"--mapping", "angular"}}) {
+    Strings words = relight("sun=2");
+    words.insert(words.end(), option.begin(), option.end());
+    expectError(words, option.front() + ": has no effect with --gain");
+  }
+  for (const Strings& option : {Strings{"--exposure", "3"}, {"--tonemap", "aces"}}) {
+    Strings words = relight("sun=2");
+    words.insert(words.end(), option.begin(), option.end());
+    expectError(words, option.front() + ": is for a .png");
+  }
   expectError(relight("lamp=2,lamp=3"), "two gains");
   expectError(relight("lamp=1,2"), "3 numbers");
   expectError(relight("lamp="), "--gain lamp");

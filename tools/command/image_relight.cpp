@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
@@ -174,7 +175,18 @@ void runGains(const ImageRelightArguments& arguments, const DisplayTransform& tr
   print(writeInWindow(arguments.out, std::move(output), arguments.in, transform), false);
 }
 
-void run(const ImageRelightArguments& arguments) {
+void checkEffects(const ImageRelightArguments& arguments, const Command& command) {
+  if (!arguments.gains.empty())
+    for (const char* option : {"--bent", "--suns", "--add", "--rotation", "--scale", "--mapping"})
+      if (command.has(option))
+        throwInput("{}: has no effect with --gain; it is for --probe, leave it out", option);
+  if (lowerExtension(arguments.out) == ".png") return;
+  for (const auto& [given, option] : {std::pair(arguments.exposure != 0, "--exposure"),
+                                      std::pair(arguments.tone != "none", "--tonemap")})
+    if (given) throwInput("{}: is for a .png; other images are linear", option);
+}
+
+void run(const ImageRelightArguments& arguments, const Command& command) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in, arguments.probe, arguments.added});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
@@ -182,6 +194,7 @@ void run(const ImageRelightArguments& arguments) {
     throwInput("--exposure: must be a finite number of stops");
   if (arguments.gains.empty() == arguments.probe.empty())
     throwInput("--gain, --probe: give one of the two");
+  checkEffects(arguments, command);
   arguments.probe.empty() ? runGains(arguments, transform) : runProbe(arguments, transform);
 }
 
@@ -217,7 +230,7 @@ void addImageRelightCommand(Command image) {
       .addOption("--tonemap", arguments->tone,
                  fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
       .showsDefault();
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments, command] { run(*arguments, command); });
 }
 
 }  // namespace chromeball
