@@ -189,6 +189,15 @@ TEST(LightGroups, RelightKeepsTheHeaderOfACrop) {
   }
   EXPECT_EQ(std::get<std::string>(after.metadata.at("strategy")),
             std::get<std::string>(before.metadata.at("strategy")));
+  EXPECT_TRUE(before.metadata.contains("noise"));
+  EXPECT_FALSE(after.metadata.contains("noise"));
+  EXPECT_EQ(std::get<std::string>(after.metadata.at("relit")), "gain=sun=2");
+  ASSERT_EQ(runCommand({"image", "relight", scene / "r.exr", "--gain", "lamp=1,2,0.5", "-o",
+                        scene / "again.exr"})
+                .status,
+            0);
+  EXPECT_EQ(std::get<std::string>(readImageFile(scene / "again.exr").metadata.at("relit")),
+            "gain=sun=2; then gain=lamp=1,2,0.5");
 }
 
 // EXR channels have 255 bytes at most. Long names that begin alike stay apart.
