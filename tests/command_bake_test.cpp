@@ -182,6 +182,8 @@ TEST_F(CommandBake, RefusesBadInput) {
   refuses({"--what", "shadows"}, "irradiance, ambient-occlusion, radiance");
   refuses({"--to", "paint"}, "lightmap, vertices");
   refuses({"--to", "vertices", "--size", "32"}, "is for lightmaps");
+  refuses({"--to", "vertices", "--denoise"}, ": --denoise: is for lightmaps");
+  refuses({"--to", "vertices", "--no-denoise"}, ": --no-denoise: is for lightmaps");
   refuses({"--scale", "-1"}, "--scale");
   refuses({"--samples", "1"}, "--samples");
   refuses({"--size", "16384", "--memory", "1"}, "limit");

@@ -200,9 +200,26 @@ TEST_F(SlowCommandCapture, BadSeriesAreRejected) {
   expect(withOptions({"--flat-field", write("zero.exr", Image(64, 32, 3))}), "above 0 everywhere");
   expect(withOptions({"--response", "sgrb"}), "`sgrb` is neither linear, srgb or solve nor a file");
   expect(withOptions({"--response", plain}), "is no response curve");
-  expect(withOptions({"--smoothness", "-1"}), "--smoothness");
+  expect(withOptions({"--response", "solve", "--smoothness", "-1"}), "`-1` should be above 0");
+  for (const Words& options : {Words{}, {"--response", "linear"}})
+    expect(joined(withOptions(options), {"--smoothness", "300"}),
+           "--smoothness: has no effect without --response solve");
+  expect(withOptions({"--white", "2"}), "integers of 8 bits, which are white at 1");
   expect(withOptions({"--calibrate-filter", plain, plain}), "give no photographs");
   expect({"--calibrate-filter", plain, white}, "two images of one view");
+  for (const Words& options : {Words{"--exposures", "1,2"},
+                               {"--apertures", "2,4"},
+                               {"--aperture-ratio", "4:16=16.63"},
+                               {"--filter", "1=0.1"},
+                               {"--flat-field", plain},
+                               {"--response", "linear"},
+                               {"--write-response", folder_ / "curve.csv"},
+                               {"--smoothness", "300"},
+                               {"--white", "2"},
+                               {"--resize"},
+                               {"--unaligned"}})
+    expect(joined({"--calibrate-filter", plain, plain}, options),
+           options.front() + ": has no effect with --calibrate-filter");
   expect({"--calibrate-filter", black, black}, "no pixel is above 0");
   expect({write("a.exr", radiance_), write("b.exr", radiance_), "-o", out_, "--exposures", "1,2",
           "--response", "solve"},

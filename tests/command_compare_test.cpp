@@ -201,6 +201,10 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
   expectError(underSun, "biased");
   writeImage(folder_ / "other.exr", Image(8, 8, 3));
   expectInputError({"--reference", folder_ / "other.exr"}, "a size of 8x8");
+  for (const char* strategy : {"nonsense", "importance", "auto"})
+    expectInputError({"--reference", folder_ / "other.exr", "--reference-strategy", strategy},
+                     "--reference-strategy: the reference is a file");
+  expectInputError({"--reference-strategy", "nonsense"}, "unknown strategy `nonsense`");
   EXPECT_FALSE(fs::exists(dir())) << "created before the input was checked";
 
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);

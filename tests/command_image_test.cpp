@@ -237,6 +237,8 @@ TEST(SlowCommandImage, BadInputIsRejected) {
   expectError({"image", "error", a, folder / "none.exr"}, "no such file");
   expectError({"image", "error", a, a, "--map", "z", "-o", png}, "--aov variance");
   expectError({"image", "error", a, a, "--map", "flipp", "-o", png}, "`flip`");
+  for (const char* map : {"z", "flip", "relative"})
+    expectError({"image", "error", a, a, "--map", map}, "--map: has no effect without --output");
   expectError({"image", "error", a, a, "-o", folder / "map.exr"}, ".png");
   expectError({"image", "view", a, folder / "a.gif"}, ".png");
   expectError({"image", "view", a, folder / "b.exr"}, ".png");

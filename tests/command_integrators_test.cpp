@@ -255,6 +255,20 @@ TEST_F(CommandIntegrators, RelightByAProbe) {
   }
   ASSERT_EQ(runCommand(relight({"--probe", probe})).status, 0);
   const Image once = *findColor(readImageFile(out));
+  const auto attributes = [](const std::string& file) { return readImageFile(file).metadata; };
+  EXPECT_EQ(std::get<std::string>(attributes(out).at("relit")), "probe=" + probe);
+  for (const char* name : {"probe", "command", "noise", "samples", "strategy", "files"}) {
+    EXPECT_TRUE(attributes(in).contains(name)) << name;
+    EXPECT_FALSE(attributes(out).contains(name)) << name;
+  }
+  for (const char* name : {"worldToCamera", "cameraFov", "size"})
+    EXPECT_EQ(attributes(out).at(name), attributes(in).at(name)) << name;
+  ASSERT_EQ(runCommand(relight({"--probe", probe, "--scale", "2,1,1", "--rotation", "30", "--bent",
+                                "--suns", "--add", in}))
+                .status,
+            0);
+  EXPECT_EQ(std::get<std::string>(attributes(out).at("relit")),
+            "probe=" + probe + " rotation=30 scale=2,1,1 bent suns add=" + in);
   ASSERT_EQ(runCommand(relight({"--probe", probe, "--scale", "2"})).status, 0);
   const Image twice = *findColor(readImageFile(out));
   std::filesystem::copy_file(out, folder_ / "added.exr");
@@ -270,6 +284,8 @@ TEST_F(CommandIntegrators, RelightByAProbe) {
   expectError(relight({"--probe", folder_ / "none.exr"}), "none.exr");
   expectError(relight({"--probe", probe, "--scale", "-1"}), "--scale");
   expectError(relight({"--probe", probe, "--exposure", "nan"}), "--exposure");
+  expectError(relight({"--probe", probe, "--exposure", "3"}), "--exposure: is for a .png");
+  expectError(relight({"--probe", probe, "--tonemap", "aces"}), "--tonemap: is for a .png");
   expectError(relight({"--probe", probe, "--add", probe}), "pixels");
   expectError({"image", "relight", probe, "--probe", probe, "-o", out}, "albedo");
   EXPECT_FALSE(std::filesystem::exists(out));

@@ -189,6 +189,15 @@ TEST(LightGroups, RelightKeepsTheHeaderOfACrop) {
   }
   EXPECT_EQ(std::get<std::string>(after.metadata.at("strategy")),
             std::get<std::string>(before.metadata.at("strategy")));
+  EXPECT_TRUE(before.metadata.contains("noise"));
+  EXPECT_FALSE(after.metadata.contains("noise"));
+  EXPECT_EQ(std::get<std::string>(after.metadata.at("relit")), "gain=sun=2");
+  ASSERT_EQ(runCommand({"image", "relight", scene / "r.exr", "--gain", "lamp=1,2,0.5", "-o",
+                        scene / "again.exr"})
+                .status,
+            0);
+  EXPECT_EQ(std::get<std::string>(readImageFile(scene / "again.exr").metadata.at("relit")),
+            "gain=sun=2; then gain=lamp=1,2,0.5");
 }
 
 // EXR channels have 255 bytes at most. Long names that begin alike stay apart.
@@ -277,6 +286,21 @@ TEST(LightGroups, RefuseWhatTheyCannotDo) {
   };
   expectError(relight("lmap=2"), "`lamp`");
   expectError(relight("2"), "NAME=GAIN");
+  for (const Strings& option : {Strings{"--bent"},
+                                {"--suns"},
+                                {"--add", scene / "o.exr"},
+                                {"--rotation", "30"},
+                                {"--scale", "3"},
+                                {"--mapping", "angular"}}) {
+    Strings words = relight("sun=2");
+    words.insert(words.end(), option.begin(), option.end());
+    expectError(words, option.front() + ": has no effect with --gain");
+  }
+  for (const Strings& option : {Strings{"--exposure", "3"}, {"--tonemap", "aces"}}) {
+    Strings words = relight("sun=2");
+    words.insert(words.end(), option.begin(), option.end());
+    expectError(words, option.front() + ": is for a .png");
+  }
   expectError(relight("lamp=2,lamp=3"), "two gains");
   expectError(relight("lamp=1,2"), "3 numbers");
   expectError(relight("lamp="), "--gain lamp");

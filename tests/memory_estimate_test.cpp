@@ -110,5 +110,15 @@ TEST_F(SlowMemoryEstimate, TexturesAreRefusedByTheirHeaders) {
                 "its textures take 0.0895 GB of memory; the limit is 0.05 GB");
 }
 
+TEST(MemoryEstimate, OfAPixelIsThatOfTheEnvelope) {
+  const std::string page = fileContents(std::string(kSourceDir) + "/tests/ENVELOPE.md");
+  constexpr std::string_view kBefore = "a pixel takes about ";
+  const size_t at = page.find(kBefore);
+  ASSERT_NE(at, std::string::npos);
+  RenderSettings settings;
+  settings.width = settings.height = 1;
+  EXPECT_NEAR(std::stod(page.substr(at + kBefore.size())) / imageBytes(settings), 1, 0.02);
+}
+
 }  // namespace
 }  // namespace chromeball::memory_estimate_test

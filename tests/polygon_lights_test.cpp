@@ -333,6 +333,14 @@ TEST(PolygonLights, RefuseOthers) {
   refused("probe_polygon = [[20, 64], [20.01, 64], [20, 64.01]]\n",
           "smaller than the probe's texels");
   refused("file = 'none.json'\n", "none.json");
+  const auto refusedToSuggest = [&](const std::string& option, const std::string& value) {
+    expectError(
+        {"lights", room / "room.exr", "--suggest", "2", "-o", room / "s.json", option, value},
+        option + ": is for lights; --suggest writes polygons");
+    EXPECT_FALSE(std::filesystem::exists(room / "s.json"));
+  };
+  for (const char* format : {"gltf", "csv", "opengl", "json"}) refusedToSuggest("--format", format);
+  for (const char* units : {"radiometric", "photometric"}) refusedToSuggest("--light-units", units);
 }
 
 }  // namespace

@@ -241,5 +241,49 @@ TEST_F(SlowLintSelection, TheLintedCommitIsNear) {
   EXPECT_NE(cut.error.find("git fetch --unshallow"), std::string::npos) << cut.error;
 }
 
+// The part of docs/capture.md about real photographs.
+TEST(SlowCaptureTutorial, WritesItsRecordIntoAnotherFolder) {
+  if (std::system("command -v python3 > /dev/null") != 0) GTEST_SKIP() << "no python3";
+  const TemporaryFolder folder;
+  const std::string photographs = "data/reference/differential_rendering/kartikagrawal27/Materials";
+  std::filesystem::create_directories(folder / photographs);
+  std::filesystem::create_directories(folder / "out");
+  std::ofstream(folder / "stubs.py")
+      << "import pathlib, sys, types\n"
+         "import course, light, main, plate\n"
+         "class Run:\n"
+         "    def __init__(self, scratch, pictures):\n"
+         "        self.scratch = scratch\n"
+         "main.Run, main.Photographs, main.page = Run, lambda run: None, lambda *parts: 'page'\n"
+         "light.steps = plate.steps = lambda *arguments: []\n"
+         "course.exposures = lambda run: ['made']\n"
+         "course.ball = course.camera = course.composite = lambda run: []\n"
+         "course.merged = lambda run, folder: []\n"
+         "course.RECORD = pathlib.Path('course_record.md').resolve()\n"
+         "main.main()\n";
+  const std::string scripts = std::string(kSourceDir) + "/tools/scripts/",
+                    run = "cd '" + folder / "" + "' && CHROMEBALL_DATA=data PYTHONPATH=" + scripts +
+                          "shared:" + scripts + "capture_tutorial PYTHONDONTWRITEBYTECODE=1 ";
+  ASSERT_EQ(std::system((run + "python3 stubs.py --out out > /dev/null").c_str()), 0);
+  EXPECT_EQ(fileContents(folder / "out/course_record.md"), "made\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "course_record.md"));
+}
+
+// In the first lines of code of docs/farm.md.
+TEST(FarmPage, MergesNoPartialFiles) {
+  const TemporaryFolder folder;
+  for (const char* file : {"part-1.exr", "part-1.partial.exr", "part-2.exr"})
+    std::ofstream(folder / file) << "";
+  std::string page = fileContents(std::string(kSourceDir) + "/docs/farm.md");
+  const size_t from = page.find("chromeball merge ") + 17, to = page.find(" -o", from);
+  ASSERT_LT(to, page.size());
+  std::string list = page.substr(from, to - from);
+  list.replace(list.find('N'), 1, "2");
+  std::ofstream(folder / "list.sh") << "echo " + list;
+  const std::string line = "cd '" + folder / "" + "' && bash list.sh > out";
+  ASSERT_EQ(std::system(line.c_str()), 0);
+  EXPECT_EQ(fileContents(folder / "out"), "part-1.exr part-2.exr\n");
+}
+
 }  // namespace
 }  // namespace scripts_test

@@ -161,6 +161,16 @@ TEST(Stitch, TilesThatDoNotOverlapAreRefused) {
   EXPECT_THROW(refinePoses(tiles), InputError) << "a constant place determines no pose";
 }
 
+TEST(Stitch, ASingleTileHasNoPoseToRefine) {
+  const Probe place(gradientProbe({64, 32}, Rgb(1), {0.5, 0.3, -0.6}));
+  std::vector<Tile> tiles{photograph(place, Rotation(30), 50, 100, 100)};
+  const PoseRefinement refinement = refinePoses(tiles);
+  EXPECT_EQ(refinement.turns, std::vector<double>{0});
+  EXPECT_EQ(refinement.before, 0);
+  EXPECT_EQ(refinement.after, 0);
+  EXPECT_EQ(tiles[0].pose, Rotation(30));
+}
+
 class CommandStitch : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return folder_ / name; }
@@ -205,6 +215,20 @@ TEST_F(CommandStitch, ReadsAListAndWritesRefinedPoses) {
   for (size_t i = 0; i < a.texels.size(); ++i) ASSERT_NEAR(a.texels[i], b.texels[i], 1e-4f);
 }
 
+TEST_F(CommandStitch, RefinesASingleTileToItself) {
+  const Probe place(studio());
+  writeImage(path("n.exr"), photograph(place, Rotation(), 50, 32, 32).image);
+  const std::string tile = list("fov = 50\n[[tile]]\nfile = 'n.exr'\nyaw = 0\n");
+  std::vector<std::string> words{"probe", "stitch", tile, "-o", path("plain.exr")};
+  ASSERT_EQ(runCommand(words).status, 0);
+  words.back() = path("refined.exr");
+  words.push_back("--refine");
+  const CommandResult refined = runCommand(words);
+  ASSERT_EQ(refined.status, 0) << refined.error;
+  EXPECT_EQ(refined.out.find("overlaps"), std::string::npos) << refined.out;
+  EXPECT_EQ(readImage(path("plain.exr")).texels, readImage(path("refined.exr")).texels);
+}
+
 TEST_F(CommandStitch, WrongListsAreExplained) {
   writeImage(path("a.exr"), constantProbe({8, 8}, Rgb(1)));
   refuse("", "tiles.toml: has no [[tile]]");
@@ -222,6 +246,14 @@ TEST_F(CommandStitch, WrongListsAreExplained) {
   refuse("fov = 50\n[[tile]]\nfile = 'a.exr'\nyav = 3\n", "tiles.toml:4: unknown key `yav`; ");
   refuse("fov = 50\n[[tile]]\nfile = 'a.exr'\n[[tile]]\nfile = 'a.exr'\nyaw = 90\n",
          "a.exr: is not connected to ");
+  writeImage(path("black.exr"), constantProbe({8, 8}, Rgb(0)));
+  const std::string black = "[[tile]]\nfile = 'black.exr'\n", overlapping = "yaw = 20\n";
+  constexpr const char* kBlack =
+      "where they overlap, one or both are black; if all have the same exposure, give "
+      "--same-exposure";
+  refuse("fov = 50\n" + black + black + overlapping, kBlack);
+  refuse("fov = 50\n[[tile]]\nfile = 'a.exr'\n" + black + overlapping, kBlack);
+  refuse("fov = 50\n" + black + "[[tile]]\nfile = 'a.exr'\n" + overlapping, kBlack);
   expectError(
       {"probe", "stitch", list("fov = 50\n[[tile]]\nfile = 'a.exr'\n"), "-o", path("a.exr")},
       "a.exr");

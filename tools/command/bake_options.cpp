@@ -49,8 +49,8 @@ void checkBakeOptions(const BakeOptions& a) {
   if (a.toVertices())
     for (const auto& [given, option] :
          {std::pair(a.size.has_value(), "--size"), std::pair(a.padding.has_value(), "--padding"),
-          std::pair(a.texel.has_value(), "--texel"),
-          std::pair(a.denoises || a.keepsNoise, "--denoise")})
+          std::pair(a.texel.has_value(), "--texel"), std::pair(a.denoises, "--denoise"),
+          std::pair(a.keepsNoise, "--no-denoise")})
       if (given) throwInput("{}: is for lightmaps; leave it out with --to vertices", option);
   if (a.settings.has("render.ao_distance") && a.what != "ambient-occlusion")
     throwInput("--ao-distance: is for --what ambient-occlusion");

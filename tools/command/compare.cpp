@@ -39,6 +39,7 @@ struct CompareArguments {
   int repeats = 4;
   std::string reference, referenceStrategy = "auto", baseline, folder;
   std::optional<int> referenceSamples;
+  bool choosesReference = false;  // referenceStrategy is given
 };
 
 // Combines each strategy with each integrator, except rows that name one.
@@ -151,8 +152,11 @@ Study planStudy(const CompareArguments& a, Messages& notes) {
   if (std::count(study.strategies.begin(), study.strategies.end(), study.baseline) == 0)
     throwInput("--baseline: `{}` is not among the compared strategies", a.baseline);
   study.referenceFile = a.reference;
-  if (!a.reference.empty() && a.referenceSamples)
-    throwInput("--reference-samples: the reference is a file; give one or the other");
+  if (!a.reference.empty())
+    for (const auto& [given, option] :
+         {std::pair(a.referenceSamples.has_value(), "--reference-samples"),
+          std::pair(a.choosesReference, "--reference-strategy")})
+      if (given) throwInput("{}: the reference is a file; give one or the other", option);
   study.referenceStrategy = rowNamed(a.referenceStrategy, "--reference-strategy").name();
   planReferenceSamples(a, study.budgets);  // throws for an invalid number
   if (a.folder.empty()) throwInput("--output: the name of the folder is empty");
@@ -315,7 +319,10 @@ void addCompareCommand(Command app) {
   command
       .addOption("-o,--output", a.folder, "Folder of the report; a comparison in it is continued")
       .required();
-  command.callback([arguments] { compare(*arguments); });
+  command.callback([arguments, command] {
+    arguments->choosesReference = command.has("--reference-strategy");
+    compare(*arguments);
+  });
 }
 
 }  // namespace chromeball

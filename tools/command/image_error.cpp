@@ -108,11 +108,13 @@ void writeMap(const ImageErrorArguments& arguments, const Image& map) {
                logarithmic ? maximum * std::pow(10, -kDecades) : 0, maximum);
 }
 
-void run(const ImageErrorArguments& arguments) {
+void run(const ImageErrorArguments& arguments, bool isMapGiven) {
   static constexpr std::array<std::string_view, 3> kMaps = {"relative", "z", "flip"};
   if (std::find(kMaps.begin(), kMaps.end(), arguments.map) == kMaps.end())
     throwInput("--map: `{}` is not known; {}", arguments.map,
                didYouMean(arguments.map, {kMaps.begin(), kMaps.end()}));
+  if (isMapGiven && arguments.output.empty())
+    throwInput("--map: has no effect without --output; give the image to write, or leave it out");
   if (!arguments.output.empty()) checkOutputFile(arguments.output, {".png"});
   checkDistinct({arguments.output}, {arguments.a, arguments.b});
   const Side a(arguments.a), b(arguments.b);
@@ -159,7 +161,7 @@ void addImageErrorCommand(Command image) {
           "--map", arguments->map,
           "What --output shows: relative (error), z (in sigmas, needs variance layers) or flip")
       .showsDefault();
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments, command] { run(*arguments, command.has("--map")); });
 }
 
 }  // namespace chromeball

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
@@ -17,6 +18,7 @@
 #include "probe/probe.h"
 #include "probe/sun_extraction.h"
 #include "relight/stage/light_layers.h"
+#include "relit_attributes.h"
 #include "rotation_option.h"
 
 namespace chromeball {
@@ -130,6 +132,37 @@ void checkFinite(const Image& color, const std::string& path) {
       throwInput("{}: the picture exceeds the largest float, 3.4e38, or has such texels", path);
 }
 
+// "probe=dusk.exr rotation=30 scale=2".
+std::string lightInWords(const ImageRelightArguments& a) {
+  std::string text = "probe=" + a.probe;
+  if (a.mapping != "auto") text += " mapping=" + a.mapping;
+  if (a.rotation != Rotation())
+    text += fmt::format(" rotation={}", fmt::join(a.rotation.numbers(), ","));
+  if (a.scale != "1") text += " scale=" + a.scale;
+  if (a.bent) text += " bent";
+  if (a.leavesSunsOut) text += " suns";
+  if (!a.added.empty()) text += " add=" + a.added;
+  return text;
+}
+
+// "gain=sun=2,lamp=1,0.8,0.6", after the gains applied to the image before.
+std::string gainsInWords(const ImageRelightArguments& a, const Metadata& metadata) {
+  std::string text;
+  if (const auto earlier = metadata.find("relit"); earlier != metadata.end())
+    if (const auto* gains = std::get_if<std::string>(&earlier->second)) text = *gains + "; then ";
+  return text + "gain=" + a.gains;
+}
+
+// The file's attributes without those that are no longer true, and how it was relit.
+Metadata relitMetadata(const ImageRelightArguments& arguments, const ImageFile& file) {
+  Metadata kept = keptMetadata(file, arguments.in, arguments.out);
+  eraseNoise(kept);
+  if (!arguments.probe.empty()) eraseLight(kept);
+  kept["relit"] =
+      arguments.probe.empty() ? gainsInWords(arguments, file.metadata) : lightInWords(arguments);
+  return kept;
+}
+
 void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& transform) {
   const ImageFile file = openImageFile(arguments.in);
   const OcclusionLayers layers{
@@ -151,7 +184,7 @@ void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& tr
   }
   checkFinite(color, arguments.in);
   OutputImage output;
-  output.metadata = keptMetadata(file, arguments.in, arguments.out);
+  output.metadata = relitMetadata(arguments, file);
   output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, color));
   print(writeInWindow(arguments.out, std::move(output), arguments.in, transform), false);
@@ -164,7 +197,7 @@ void runGains(const ImageRelightArguments& arguments, const DisplayTransform& tr
   const std::vector<Rgb> gains = gainsOf(groups, given);
   for (size_t i = 0; i < gains.size(); ++i) groups.layers[i] = scaled(groups.layers[i], gains[i]);
   OutputImage output;
-  output.metadata = keptMetadata(file, arguments.in, arguments.out);
+  output.metadata = relitMetadata(arguments, file);
   output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, sumOf(groups.layers)));
   checkFinite(output.layers.front().image, arguments.in);
@@ -174,7 +207,18 @@ void runGains(const ImageRelightArguments& arguments, const DisplayTransform& tr
   print(writeInWindow(arguments.out, std::move(output), arguments.in, transform), false);
 }
 
-void run(const ImageRelightArguments& arguments) {
+void checkEffects(const ImageRelightArguments& arguments, const Command& command) {
+  if (!arguments.gains.empty())
+    for (const char* option : {"--bent", "--suns", "--add", "--rotation", "--scale", "--mapping"})
+      if (command.has(option))
+        throwInput("{}: has no effect with --gain; it is for --probe, leave it out", option);
+  if (lowerExtension(arguments.out) == ".png") return;
+  for (const auto& [given, option] : {std::pair(arguments.exposure != 0, "--exposure"),
+                                      std::pair(arguments.tone != "none", "--tonemap")})
+    if (given) throwInput("{}: is for a .png; other images are linear", option);
+}
+
+void run(const ImageRelightArguments& arguments, const Command& command) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in, arguments.probe, arguments.added});
   const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
@@ -182,6 +226,7 @@ void run(const ImageRelightArguments& arguments) {
     throwInput("--exposure: must be a finite number of stops");
   if (arguments.gains.empty() == arguments.probe.empty())
     throwInput("--gain, --probe: give one of the two");
+  checkEffects(arguments, command);
   arguments.probe.empty() ? runGains(arguments, transform) : runProbe(arguments, transform);
 }
 
@@ -217,7 +262,7 @@ void addImageRelightCommand(Command image) {
       .addOption("--tonemap", arguments->tone,
                  fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
       .showsDefault();
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments, command] { run(*arguments, command); });
 }
 
 }  // namespace chromeball

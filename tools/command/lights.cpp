@@ -144,6 +144,11 @@ void runPolygonsOf(const LightsArguments& arguments) {
       {"--seed", arguments.seed.has_value()}};
   for (const auto& [option, isGiven] : others)
     if (isGiven) throwInput("{}: is for the lights of a --method, not for polygons", option);
+  if (arguments.suggest)
+    for (const auto& [option, text] :
+         {std::pair("--format", &arguments.format), std::pair("--light-units", &arguments.units)})
+      if (!text->empty())
+        throwInput("{}: is for lights; --suggest writes polygons, a .json; leave it out", option);
   const LightFormat format = arguments.suggest
                                  ? LightFormat::Json
                                  : lightFormat(arguments.output, arguments.format, "--format");

@@ -117,8 +117,7 @@ void merge(const MergeArguments& arguments) {
 
 void calibrate(const MergeArguments& arguments) {
   constexpr double kTolerance = 0.02;
-  if (!arguments.files.empty() || !arguments.output.empty())
-    throwInput("--calibrate-filter: prints a transmission; give no photographs and no -o");
+  arguments.checkCalibration();
   const auto read = [](const std::string& path) {
     ImageFile file = openImageFile(path);
     std::optional<Image> clipped = layerOf(file, "clipped", path);

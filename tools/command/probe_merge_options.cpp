@@ -112,6 +112,24 @@ void MergeArguments::addTo(Command command) {
   command.addFlag("--json", json, "print JSON");
 }
 
+void MergeArguments::checkCalibration() const {
+  if (!files.empty() || !output.empty())
+    throwInput("--calibrate-filter: prints a transmission; give no photographs and no -o");
+  const std::pair<const char*, bool> others[] = {{"--exposures", !exposures.empty()},
+                                                 {"--apertures", !apertures.empty()},
+                                                 {"--aperture-ratio", !ratios.empty()},
+                                                 {"--filter", !filters.empty()},
+                                                 {"--flat-field", !flatFields.empty()},
+                                                 {"--response", !response.empty()},
+                                                 {"--write-response", !responseOutput.empty()},
+                                                 {"--smoothness", !smoothness.empty()},
+                                                 {"--white", !white.empty()},
+                                                 {"--resize", resizes},
+                                                 {"--unaligned", unaligned}};
+  for (const auto& [option, isGiven] : others)
+    if (isGiven) throwInput("{}: has no effect with --calibrate-filter; leave it out", option);
+}
+
 PhotographSeries MergeArguments::series() const {
   PhotographSeries series;
   series.files = files;
@@ -121,6 +139,8 @@ PhotographSeries MergeArguments::series() const {
   for (const std::string& text : filters) series.filters.push_back(parseFilter(text, files.size()));
   for (const std::string& text : flatFields) series.flatFields.push_back(parseFlatField(text));
   series.response = response;
+  if (!smoothness.empty() && response != "solve")
+    throwInput("--smoothness: has no effect without --response solve; leave it out");
   if (!smoothness.empty()) series.smoothness = parsePositive(smoothness, "--smoothness");
   constexpr double kSmoothest = 1e6;  // more leaves a straight line, and rounding errors
   if (!(series.smoothness <= kSmoothest))

@@ -15,6 +15,9 @@ struct MergeArguments {
 
   void addTo(Command command);
 
+  // Throws InputError for options that are for a series, not for the calibration of a filter.
+  void checkCalibration() const;
+
   // Converts the options, without looking at files. Throws InputError.
   PhotographSeries series() const;
 };

@@ -45,13 +45,20 @@ void refine(std::vector<TileEntry>& entries, std::vector<Tile>& tiles) {
     fmt::print("{}  yaw {:.4f}, pitch {:.4f}, roll {:.4f}: turned by {:.4f} degrees\n",
                printable(entries[i].file), pose.yaw, pose.pitch, pose.roll, refinement.turns[i]);
   }
+  if (tiles.size() < 2) return;  // nothing overlaps
   fmt::print("overlaps differ by {:.3g}% before and {:.3g}% after, RMS of the log radiance\n",
              100 * refinement.before, 100 * refinement.after);
 }
 
 std::vector<double> gainsOf(const ProbeStitchArguments& arguments, const std::vector<Tile>& tiles) {
   if (arguments.sameExposure) return std::vector<double>(tiles.size(), 1.0);
-  const std::vector<double> gains = tileGains(tiles);
+  const std::vector<double> gains = [&] {
+    try {
+      return tileGains(tiles);
+    } catch (const InputError& error) {
+      throwInput("{}; if all have the same exposure, give --same-exposure", error.what());
+    }
+  }();
   for (size_t i = 0; i < tiles.size(); ++i)
     fmt::print("{}  gain {:.4f}\n", printable(tiles[i].name), gains[i]);
   return gains;

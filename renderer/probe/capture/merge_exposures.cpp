@@ -160,6 +160,9 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
       if (!(texel >= 0)) ++invalid, texel = 0;
   }
   if (resizes) toSmallestSize(result.levels);
+  if (result.bits > 0 && white)
+    throwInput("white: {} has {}, which are white at 1; it is for floats, leave it out",
+               files.front(), kindOf(result.bits));
   if (result.bits > 0) return result;
   result.white = white.value_or(std::max(1.0f, largestTexel(result.levels)));
   for (Image& image : result.levels)

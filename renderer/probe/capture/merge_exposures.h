@@ -51,7 +51,8 @@ struct PhotographLevels {
 // `resizes`: photographs of several sizes are crops of one thing, such as a ball, and are resampled
 // to the smallest width and height. `white` is the white level of float files; the default is 1, or
 // their largest texel if that is higher. Integers are white at 1. Throws InputError if a file is no
-// image, or if sizes, kinds of numbers, primaries or stated transfers differ.
+// image, if sizes, kinds of numbers, primaries or stated transfers differ, and for a `white` of
+// integers.
 PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
                             bool resizes = false);
 

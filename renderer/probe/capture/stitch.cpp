@@ -54,13 +54,14 @@ struct Ratio {
 };
 using Pair = std::pair<int, int>;
 
+// Of all pairs that overlap; none where one of the two is black.
 std::map<Pair, std::vector<Ratio>> ratiosOf(const std::vector<TileView>& views) {
   std::map<Pair, std::vector<Ratio>> ratios;
   for (const Overlap& o : overlapsOf(views, kHeight)) {
     const double first = double(luminance(views[size_t(o.first)].at(o.direction).radiance));
     const double second = double(luminance(views[size_t(o.second)].at(o.direction).radiance));
-    if (first > 0 && second > 0)
-      ratios[{o.first, o.second}].push_back({std::log(second / first), double(o.weight)});
+    std::vector<Ratio>& ofPair = ratios[{o.first, o.second}];
+    if (first > 0 && second > 0) ofPair.push_back({std::log(second / first), double(o.weight)});
   }
   return ratios;
 }
@@ -80,9 +81,16 @@ void checkConnected(const std::vector<Tile>& tiles,
   std::vector<bool> reached(tiles.size());
   reached[0] = true;
   for (size_t round = 0; round < tiles.size(); ++round)
-    for (const auto& [pair, ignored] : ratios)
-      if (reached[size_t(pair.first)] || reached[size_t(pair.second)])
+    for (const auto& [pair, all] : ratios)
+      if (!all.empty() && (reached[size_t(pair.first)] || reached[size_t(pair.second)]))
         reached[size_t(pair.first)] = reached[size_t(pair.second)] = true;
+  for (const auto& [pair, ignored] : ratios) {
+    auto [other, seen] = pair;
+    if (reached[size_t(other)]) std::swap(other, seen);
+    if (!reached[size_t(other)] && reached[size_t(seen)])
+      throwInput("{}: cannot be compared with {}: where they overlap, one or both are black",
+                 tiles[size_t(other)].name, tiles[size_t(seen)].name);
+  }
   for (size_t i = 0; i < tiles.size(); ++i)
     if (!reached[i])
       throwInput("{}: is not connected to {} by tiles that overlap", tiles[i].name, tiles[0].name);
@@ -99,6 +107,7 @@ std::vector<double> tileGains(const std::vector<Tile>& tiles) {
   for (int i = 0; i < int(tiles.size()); ++i) sum.push_back({i, 1});
   equations.add(sum, 0);
   for (const auto& [pair, all] : ratios) {
+    if (all.empty()) continue;
     const Ratio median = medianOf(all);
     const LeastSquares::Term row[] = {{pair.first, 1}, {pair.second, -1}};
     equations.add(row, median.logarithm, median.weight);

@@ -36,7 +36,7 @@ struct PoseRefinement {
 // Turns all tiles but the first until they agree best where they overlap: Gauss-Newton steps on the
 // differences of log radiance, weighted by both windows, with images reduced to 64 rows at first
 // and to at most 512 at last. Poses should be within some degrees. Throws as tileGains(), and
-// InputError if the overlaps leave a pose undetermined.
+// InputError if the overlaps leave a pose undetermined. A single tile stays as it is.
 PoseRefinement refinePoses(std::vector<Tile>& tiles);
 
 }  // namespace chromeball

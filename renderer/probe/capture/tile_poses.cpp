@@ -184,6 +184,7 @@ void refineAt(std::vector<Tile>& tiles, int rows) {
 }  // namespace
 
 PoseRefinement refinePoses(std::vector<Tile>& tiles) {
+  if (tiles.size() < 2) return {std::vector<double>(tiles.size()), 0, 0};  // there is no unknown
   std::vector<dquat> given;
   int rows = 1;
   for (const Tile& tile : tiles) {

@@ -67,7 +67,8 @@ def data():
     return folder if "CHROMEBALL_DATA" in os.environ and folder.is_dir() else None
 
 
-def text(run):
+def text(run, record=RECORD):
+    """Reads the record if there are no photographs; otherwise writes `record`."""
     folder = data()
     if not folder:
         print("        no course data in $CHROMEBALL_DATA: the record of an earlier run is used")
@@ -77,7 +78,7 @@ def text(run):
         (run.scratch / name).unlink(missing_ok=True)
         (run.scratch / name).symlink_to(materials / name)
     made = "\n\n".join([*exposures(run), *ball(run), *camera(run), *composite(run), *merged(run, folder / SAMPLES)])
-    RECORD.write_text(made + "\n")
+    record.write_text(made + "\n")
     return made
 
 

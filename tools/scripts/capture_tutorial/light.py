@@ -179,7 +179,7 @@ def align(run, photographs):
         ["chromeball probe align true.pfm "
          "sunny.exr"], run.said(*arguments).replace(str(photographs.truth), "true.pfm"), [],
         [("rotation of the probe", f"{angle:.2f} degrees", "0", f"{angle:.2f} degrees")],
-        "The error is a third of a texel of the probe. An error of the azimuths that were written down turns the "
+        "The error is a sixth of a texel of the probe. An error of the azimuths that were written down turns the "
         "whole probe. Without a second probe, check the "
         "direction "
         "of the sun against a shadow in the plate.")

@@ -43,7 +43,7 @@ def main():
         tell("plate")
         steps += plate.steps(run, photographs)
         tell("course data")
-        real = course.text(run)
+        real = course.text(run, given.out / course.RECORD.name if given.out else course.RECORD)
     (docs / "capture.md").write_text(page(PLACE, steps, real, "pictures/capture"))
     tell(docs / "capture.md")
 
