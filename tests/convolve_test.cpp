@@ -102,6 +102,22 @@ TEST(Convolve, ByACosineIsIrradianceOverPi) {
   }
 }
 
+// A lamp at the horizon of the lobe, where the kernel rises slowly.
+TEST(Convolve, ByWideLobesKeepsLightNearTheirHorizon) {
+  Image map = constantProbe({128, 64}, Rgb(0.05f));
+  for (int y = 20; y < 24; ++y)
+    for (int x = 60; x < 64; ++x) map.setRgb(x, y, Rgb(50));
+  const std::vector<vec3> axes = texelDirections({16, 8});
+  for (const double n : {1.5, 2.0, 2.5, 3.0, 5.0}) {
+    const ZonalKernel kernel = ZonalKernel::phong(n);
+    const std::vector<dvec3> found = convolve(map, kernel, axes);
+    double mean = 0;
+    for (const dvec3& f : found) mean += f.x / double(found.size());
+    for (size_t i = 0; i < axes.size(); ++i)
+      EXPECT_NEAR(found[i].x, directSum(map, kernel, axes[i], 4).x, 2e-3 * mean) << n << ' ' << i;
+  }
+}
+
 TEST(Convolve, ByANarrowKernelIsTheMap) {
   const Image map = studioProbe({64, 32});
   const std::vector<vec3> axes = texelDirections({64, 32});

@@ -99,12 +99,20 @@ class KernelSum {
     return glm::dot(axis_, g.centre) + g.radius <= 0;
   }
 
+  // Whether a kernel that is smooth at the horizon rises there by more than the error: x^n at a
+  // height x, over the strip of rectangles at the horizon, 4 pi r, has a mean of r^n / (2 (n + 1)),
+  // and its tangent at the centre may be 0.
+  bool risesFast(double cosine, double r) const {
+    const double highest = lobe_.kernel.at(std::min(cosine + r, 1.0)).value;
+    return highest * r > 4 * lobe_.error * lobe_.mean;
+  }
+
   // The kernel at the centre, where it is linear in the cosine over the rectangle: to the error
   // times the geometric mean of its value and its peak, which is 1, or times its mean over the
   // sphere.
   std::optional<ZonalKernel::Value> linearOver(const RectangleGeometry& g) const {
     const double cosine = glm::dot(axis_, g.centre), r = g.radius;
-    if (cosine - r < 0 && r > lobe_.horizonRadius) return {};
+    if (cosine - r < 0 && (r > lobe_.horizonRadius || risesFast(cosine, r))) return {};
     const double distance = std::max(glm::distance(axis_, g.centre) - r, 0.0);
     if (r > (lobe_.kernel.width() + distance) / 4) return {};
     const ZonalKernel::Value k = lobe_.kernel.at(cosine);
