@@ -4,8 +4,8 @@
 Both render in turn, a round for each seed, so that a change of the machine's speed affects both; the ratio is the
 median over the rounds of the ratio of their times, with the smallest and the largest. Only rendering is timed: no
 loading, no building of structures and tables. All pixels get the same number of samples, and nothing is guided.
-Memory is the largest that the process has taken. "apart" is the mean difference of the two images' brightness over
-the rounds, in standard deviations of that mean.
+Memory is the largest that the process has taken. "brighter" is the mean relative difference of the two images'
+brightness over the rounds, with its standard deviation.
 """
 import argparse
 import json
@@ -76,9 +76,9 @@ def compare(scene, depth, options):
     seconds = statistics.median(own[0] for _, own in rounds)
     memory = statistics.median(own[1] / other[1] for other, own in rounds)
     spread = statistics.stdev(differences) / math.sqrt(len(rounds)) if len(rounds) > 1 else math.nan
-    apart = statistics.mean(differences) / spread if spread else 0
     print(f"{model.stem:24}{depth:6}{seconds:10.2f}{width * height * options.samples / seconds / 1e6:12.2f}"
-          f"{statistics.median(ratios):10.2f}  {min(ratios):.2f} to {max(ratios):.2f}{memory:9.2f}{apart:8.1f}",
+          f"{statistics.median(ratios):10.2f}  {min(ratios):.2f} to {max(ratios):.2f}{memory:9.2f}"
+          f"{statistics.mean(differences):12.1e} +- {spread:.0e}",
           flush=True)
 
 
@@ -88,7 +88,7 @@ def main():
     print(f"{options.probe.name}, {options.size}, {options.samples} samples per pixel, {options.threads} threads, "
           f"{options.rounds} rounds {options.options}\n"
           f"{'scene':24}{'depth':>6}{'seconds':>10}{'Msamples/s':>12}{'faster':>10}  {'from, to':12}{'memory':>9}"
-          f"{'apart':>8}", flush=True)
+          f"{'brighter':>12}", flush=True)
     for scene in options.scenes:
         for depth in options.depths:
             compare(scene, depth, options)
