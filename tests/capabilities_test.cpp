@@ -154,7 +154,7 @@ TEST(Capabilities, NumbersOutOfRangeAreRefused) {
         }}},
       {"render.samples", {[](D& d) { d.settings.samples = 0; }}},
       {"render.noise",
-       {[](D& d) { d.settings.noiseLimit = NAN; }, [](D& d) { d.settings.noiseLimit = 0; }}},
+       {[](D& d) { d.settings.noiseLimit = NAN; }, [](D& d) { d.settings.noiseLimit = -1; }}},
       {"render.time", {[](D& d) { d.settings.timeLimit = -1; }}},
       {"clamp", {[](D& d) { d.settings.clamp = -1.0f; }}},
       {"render.max_depth",

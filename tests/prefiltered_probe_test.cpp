@@ -54,7 +54,10 @@ TEST(SlowPrefilteredProbe, TablesAgreeWithConvolutions) {
                   0.02 * exact[i].y + 0.01 * meanIrradiance / kPiD)
           << roughness;
   }
-  for (const vec3& d : directions) EXPECT_EQ(filtered.radiance(d, 0), probe.radiance(d));
+  for (const vec3& d : directions) {
+    const Rgb seen = probe.radiance(d);
+    EXPECT_LT(maxComponent(absolute(filtered.radiance(d, 0) - seen)), 1e-5f * maxComponent(seen));
+  }
 }
 
 TEST(PrefilteredProbe, BearsRadianceFromTinyToHuge) {

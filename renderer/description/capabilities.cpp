@@ -219,7 +219,8 @@ struct Range {
   bool (*isMet)(const D&);
 };
 
-bool isPositive(const std::optional<double>& number) { return !number || *number > 0; }
+// A limit of 0 is never met, as one that underflows.
+bool isNotNegative(const std::optional<double>& number) { return !number || *number >= 0; }
 
 constexpr std::array kRanges = {
     Range{"render.size", "have at least one pixel",
@@ -227,9 +228,10 @@ constexpr std::array kRanges = {
             return d.size ? d.size->width > 0 && d.size->height > 0 : d.settings.height > 0;
           }},
     Range{"render.samples", "be 1 or more", [](const D& d) { return d.settings.samples > 0; }},
-    Range{"render.noise", "be above 0",
-          [](const D& d) { return isPositive(d.settings.noiseLimit); }},
-    Range{"render.time", "be above 0", [](const D& d) { return isPositive(d.settings.timeLimit); }},
+    Range{"render.noise", "not be negative",
+          [](const D& d) { return isNotNegative(d.settings.noiseLimit); }},
+    Range{"render.time", "not be negative",
+          [](const D& d) { return isNotNegative(d.settings.timeLimit); }},
     Range{"clamp", "be above 0",
           [](const D& d) { return !d.settings.clamp || *d.settings.clamp > 0; }},
     Range{"render.max_depth", "not be negative",
