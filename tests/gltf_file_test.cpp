@@ -323,6 +323,29 @@ TEST(SlowGltfFile, RejectsAmplificationByReferences) {
   EXPECT_NE(w.errorMessage().find("out of proportion to the length"), std::string::npos);
 }
 
+// Also of points, of which there is no geometry; and joints, of each primitive that has a skin.
+TEST(SlowGltfFile, RejectsManyPrimitivesOfManyNodesAndJoints) {
+  constexpr int kMany = 3000;
+  GltfWriter points;
+  const int position = points.vec3s({0, 0, 0});
+  points.add("meshes",
+             {{"primitives",
+               std::vector<json>(kMany, {{"mode", 0}, {"attributes", {{"POSITION", position}}}})}});
+  for (int i = 0; i < kMany; ++i) points.add("nodes", {{"mesh", 0}});
+  EXPECT_NE(points.errorMessage().find("out of proportion to the length"), std::string::npos);
+
+  GltfWriter skinned;
+  const int joints = skinned.accessor(skinned.view(std::vector<uint8_t>(12, 0)), kUByte, "VEC4", 3);
+  const int weights = skinned.accessor(
+      skinned.view(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}), kFloat, "VEC4", 3);
+  addTriangle(skinned, {{"attributes", {{"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}},
+              {{"skin", 0}});
+  json& primitives = skinned.root["meshes"][0]["primitives"];
+  primitives = std::vector<json>(kMany, primitives[0]);
+  skinned.add("skins", {{"joints", std::vector<int>(kMany, skinned.add("nodes", json::object()))}});
+  EXPECT_NE(skinned.errorMessage().find("out of proportion to the length"), std::string::npos);
+}
+
 TEST(GltfFile, SkinsWithoutJointsAreNamedInTheMessage) {
   GltfWriter w;
   addTriangle(w);

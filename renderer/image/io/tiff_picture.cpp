@@ -157,8 +157,8 @@ void checkRatio(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
   if (tileWidth * tileLength * texel > std::max(kAlwaysAllowed, bytes) || number(kTileDepth) != 1 ||
       tileWidth < 1 || tileLength < 1)
     throw std::runtime_error(
-        fmt::format("its tiles of {} x {} texels do not fit its image of {} x {}", tileWidth,
-                    tileLength, width, height));
+        fmt::format("its tiles of {} x {} x {} texels do not fit its image of {} x {}", tileWidth,
+                    tileLength, number(kTileDepth), width, height));
 }
 
 }  // namespace

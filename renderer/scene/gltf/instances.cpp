@@ -74,6 +74,7 @@ class InstanceReader {
       file_.spend((sizeof(Plan) + sizeof(Instance)) * std::max<size_t>(transforms.size(), 1));
       const int material = materials_.use(primitive.material, at + ".material");
       if (skinned) {
+        file_.spend(sizeof(dmat4) * pose.joints.size());  // of its key (keyOf())
         plans_.push_back({index, node.mesh, int(i), material, nullptr, dmat4(1)});
         continue;
       }
