@@ -137,14 +137,18 @@ double maxRatioOf(int compression, double width) {
   }
 }
 
-// Refuses an image that a file of this length cannot hold, before it is decoded. Blocks that
-// several strips or tiles share count once. Small images may have any ratio.
-void checkRatio(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
-  constexpr double kAlwaysAllowed = 64 << 20;
-  const auto number = [&](uint16_t tag) {
-    const std::vector<uint64_t> values = tiff.integers(directory, tag);
-    return values.empty() ? 1 : double(std::ranges::max(values));
-  };
+// The largest value of an entry; 1 if there is none.
+double largestOf(const TiffBlock& tiff, uint64_t directory, uint16_t tag) {
+  const std::vector<uint64_t> values = tiff.integers(directory, tag);
+  return values.empty() ? 1 : double(std::ranges::max(values));
+}
+
+constexpr double kAlwaysAllowed = 64 << 20;  // bytes of texels, in a file of any length
+
+// Refuses an image that a file of this length cannot hold, before it is decoded, and tiles that do
+// not fit it. Blocks that several strips or tiles share count once.
+void checkSizes(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
+  const auto number = [&](uint16_t tag) { return largestOf(tiff, directory, tag); };
   const double width = number(kWidth), height = number(kHeight);
   const double texel = number(kSamplesPerPixel) * number(kBitsPerSample) / 8;
   const double bytes = width * height * texel;
@@ -153,12 +157,13 @@ void checkRatio(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
     throw std::runtime_error(
         fmt::format("the file is too short for {} x {} texels", width, height));
   // A tile may be larger than a small image, and is decoded as a whole.
-  const double tileWidth = number(kTileWidth), tileLength = number(kTileLength);
-  if (tileWidth * tileLength * texel > std::max(kAlwaysAllowed, bytes) || number(kTileDepth) != 1 ||
-      tileWidth < 1 || tileLength < 1)
+  const double tileWidth = number(kTileWidth), tileLength = number(kTileLength),
+               tileDepth = number(kTileDepth);
+  const bool isSound = tileWidth >= 1 && tileLength >= 1 && tileDepth == 1;
+  if (!isSound || tileWidth * tileLength * texel > std::max(kAlwaysAllowed, bytes))
     throw std::runtime_error(
         fmt::format("its tiles of {} x {} x {} texels do not fit its image of {} x {}", tileWidth,
-                    tileLength, number(kTileDepth), width, height));
+                    tileLength, tileDepth, width, height));
 }
 
 }  // namespace
@@ -193,7 +198,7 @@ uint64_t pictureDirectory(std::span<const uint8_t> file) {
         "its texels are L*a*b*, of which only 8 bits would be read, tinted: "
         "convert it to RGB");
   checkWhole(tiff, picture, file.size());
-  checkRatio(tiff, picture, file.size());
+  checkSizes(tiff, picture, file.size());
   return picture;
 }
 

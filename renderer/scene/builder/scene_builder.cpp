@@ -120,7 +120,8 @@ int SceneBuilder::addMesh(Mesh mesh, int material) {
   }
   checkMesh(mesh, needs, location);
   completeMesh(mesh, needs);
-  return addMesh(std::make_shared<const Mesh>(std::move(mesh)));
+  scene_.meshes.push_back(std::move(mesh));
+  return int(scene_.meshes.size()) - 1;
 }
 
 int SceneBuilder::addMesh(MeshList::Shared mesh) {
