@@ -49,6 +49,16 @@ class CommandBake : public testing::Test {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "refused.glb"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "refused.exr"));
   }
+  // The contents of the baked model, and the messages.
+  std::pair<std::string, std::string> occlusion(const std::string& model,
+                                                const Strings& more) const {
+    Strings words{"bake",      model, "--what", "ambient-occlusion", "--to", "vertices", "--quiet",
+                  "--samples", "4",   "-o",     folder_ / "ao.glb"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0) << result.error;
+    return {fileContents(folder_ / "ao.glb"), result.error};
+  }
   static Scene load(const std::string& path) {
     return loadGltf(path, {}, [](const std::string& warning) { ADD_FAILURE() << warning; });
   }
@@ -114,29 +124,13 @@ TEST_F(CommandBake, NeedsNoProbeForOcclusion) {
 }
 
 TEST_F(CommandBake, OcclusionDoesNotDependOnLight) {
-  const auto bakeOcclusion = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"bake",
-                                   folder_ / "plate.gltf",
-                                   "--what",
-                                   "ambient-occlusion",
-                                   "--to",
-                                   "vertices",
-                                   "--quiet",
-                                   "--samples",
-                                   "4",
-                                   "-o",
-                                   folder_ / "ao.glb"};
-    words.insert(words.end(), more.begin(), more.end());
-    const CommandResult result = runCommand(words);
-    EXPECT_EQ(result.status, 0);
-    return std::pair(fileContents(folder_ / "ao.glb"), result.error);
-  };
-  const auto plain = bakeOcclusion({});
+  const std::string model = folder_ / "plate.gltf";
+  const auto plain = occlusion(model, {});
   EXPECT_EQ(plain.second, "");
-  EXPECT_EQ(
-      bakeOcclusion({"--probe", folder_ / "probe.exr", "--strategy", "suns", "--max-depth", "1"}),
-      std::pair(plain.first, std::string("chromeball: warning: --probe, --strategy, "
-                                         "--max-depth have no effect on occlusion\n")));
+  EXPECT_EQ(occlusion(model,
+                      {"--probe", folder_ / "probe.exr", "--strategy", "suns", "--max-depth", "1"}),
+            std::pair(plain.first, std::string("chromeball: warning: --probe, --strategy, "
+                                               "--max-depth have no effect on occlusion\n")));
 }
 
 // As a key of the scene file, as an option, and the option before the key.
@@ -145,22 +139,9 @@ TEST_F(CommandBake, OcclusionHasTheDistanceOfTheSceneFile) {
     std::ofstream(folder_ / "d.toml")
         << "model = '" << kSourceDir << "/scenes/models/pillars.gltf'\n[render]\n"
         << key;
-    Strings words{"bake",
-                  folder_ / "d.toml",
-                  "--what",
-                  "ambient-occlusion",
-                  "--to",
-                  "vertices",
-                  "--quiet",
-                  "--samples",
-                  "4",
-                  "-o",
-                  folder_ / "d.glb"};
-    words.insert(words.end(), more.begin(), more.end());
-    const CommandResult result = runCommand(words);
-    EXPECT_EQ(result.status, 0) << result.error;
-    EXPECT_EQ(result.error, "");
-    return fileContents(folder_ / "d.glb");
+    const auto [contents, error] = occlusion(folder_ / "d.toml", more);
+    EXPECT_EQ(error, "");
+    return contents;
   };
   const auto nearby = baked("", {"--ao-distance", "0.01"});
   EXPECT_NE(nearby, baked("", {}));
