@@ -124,9 +124,10 @@ TEST(Importance, LanesAreTheSameAsSingleDirections) {
           for (int channel = 0; channel < 3; ++channel)
             ASSERT_PRED3(near, found[i].radiance[channel], one.radiance[channel], range);
           // The pdf has the range of the radiance times its ratio to that.
-          if (range > 0)
+          if (range > 0) {
             ASSERT_PRED3(near, found[i].pdf, one.pdf,
                          range * one.pdf / std::max(maxComponent(one.radiance), 1e-30f));
+          }
         }
       }
     }
