@@ -35,6 +35,19 @@ struct World {
       image.texels[i] += noise * sigma.texels[i] * normal(random) + biased * bias.texels[i];
     return image;
   }
+  // Noise that is the same in blocks of 8 x 8 pixels.
+  Image renderInBlocks() {
+    std::normal_distribution<float> normal;
+    const auto blocks = size_t(kWidth / 8 * kHeight / 8);
+    std::vector<float> deviates(blocks);
+    for (float& d : deviates) d = normal(random);
+    Image image = expectation;
+    for (size_t i = 0; i < image.texels.size(); ++i) {
+      const size_t x = i / 3 % kWidth, y = i / 3 / kWidth;
+      image.texels[i] += sigma.texels[i] * deviates[y / 8 * (kWidth / 8) + x / 8] + bias.texels[i];
+    }
+    return image;
+  }
   std::vector<Image> repeats(int count, float noise) {
     std::vector<Image> images;
     for (int i = 0; i < count; ++i) images.push_back(render(noise, true));
@@ -93,6 +106,48 @@ TEST(BiasVariance, intervalsContainTheTrueValues) {
     expectCovers(squaredBias, kStudies, "squared bias");
     expectCovers(bias, kStudies, "bias");
   }
+}
+
+TEST(BiasVariance, intervalsContainTheTrueValuesIfPixelsAreJoined) {
+  constexpr int kStudies = 500;
+  for (const size_t count : {3u, 6u}) {
+    SCOPED_TRACE(count);
+    World world(23, 0.3f);
+    const World::Expected exact = world.expected(1);
+    int relMse = 0, variance = 0, squaredBias = 0, bias = 0;
+    for (int study = 0; study < kStudies; ++study) {
+      std::vector<Image> repeats;
+      while (repeats.size() < count) repeats.push_back(world.renderInBlocks());
+      const BiasVariance error = biasVariance(repeats, world.reference(0.2f), PixelNoise::Joined);
+      const auto holds = [](const Estimate& e, double t) { return e.low() <= t && t <= e.high(); };
+      relMse += holds(error.relMse, exact.variance + exact.squaredBias);
+      variance += holds(error.variance, exact.variance);
+      squaredBias += holds(error.squaredBias, exact.squaredBias);
+      bias += holds(error.bias, exact.bias);
+    }
+    expectCovers(relMse, kStudies, "relMse");
+    // The variance's estimate is skewed, as every one from few repeats is.
+    EXPECT_GE(variance, 0.85 * kStudies);
+    expectCovers(squaredBias, kStudies, "squared bias");
+    expectCovers(bias, kStudies, "bias");
+  }
+}
+
+// Budgets that share a noisy reference share its error.
+TEST(BiasVariance, theReferencesErrorRemainsInTheBiasOfAllBudgets) {
+  constexpr int kStudies = 500;
+  World world(29, 0.1f);
+  const double exact = world.expected(1).squaredBias;
+  int covered = 0;
+  for (int study = 0; study < kStudies; ++study) {
+    const Reference reference = world.reference(0.3f);
+    std::vector<BiasVariance> errors;
+    for (int budget = 0; budget < 6; ++budget)
+      errors.push_back(biasVariance(world.repeats(4, 0.4f), reference));
+    const Estimate bias = commonSquaredBias(errors);
+    covered += bias.low() <= exact && exact <= bias.high();
+  }
+  expectCovers(covered, kStudies, "squared bias", 0.99);
 }
 
 // The noise of the reference counts as error unless its variance is known.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include <boost/math/distributions/students_t.hpp>
+
 namespace chromeball {
 namespace {
 
@@ -19,6 +21,7 @@ struct Sums {
          referenceVariance = 0;
   // Squared standard errors of the sums above.
   double relMseError = 0, varianceError = 0, squaredBiasError = 0, differenceError = 0;
+  double referenceBiasError = 0;  // the part of squaredBiasError that the reference's noise causes
 };
 
 // The squared standard error of the mean of `numbers`: unbiased sample variance / count.
@@ -32,9 +35,12 @@ double squaredErrorOfMean(std::span<const double> numbers) {
 
 class PixelSums {
  public:
-  PixelSums(std::span<const Image> repeats, const Reference& reference)
+  // With PixelNoise::Joined the errors are those that the reference's noise causes, which is
+  // independent.
+  PixelSums(std::span<const Image> repeats, const Reference& reference, PixelNoise noise)
       : repeats_(repeats),
         reference_(reference),
+        noise_(noise),
         n_(double(repeats.size())),
         squaredErrors_(repeats.size()),
         deviations_(repeats.size()) {}
@@ -42,7 +48,7 @@ class PixelSums {
   void add(size_t pixel) {
     std::fill(squaredErrors_.begin(), squaredErrors_.end(), 0);
     std::fill(deviations_.begin(), deviations_.end(), 0);
-    double biasError = 0, differenceError = 0, crossError = 0;
+    double biasError = 0, referenceBiasError = 0, differenceError = 0, crossError = 0;
     for (size_t i = pixel * kChannels; i < (pixel + 1) * kChannels; ++i) {
       const double truth = reference_.mean.texels[i];
       const double v = reference_.squaredError.empty() ? 0 : reference_.squaredError.texels[i];
@@ -67,13 +73,22 @@ class PixelSums {
       // square s2^2 is corrected, since E[s2^2] = (R + 1) / (R - 1) variance^2.
       const double w2 = squared(s2 / n_) * (n_ - 1) / (n_ + 1) + v * v + 2 * v * s2 / n_;
       biasError += weight * std::sqrt(std::max(0.0, 4 * d * d * w - 2 * w2));
+      // The reference's part of that: 4 bias^2 v + 2 v^2.
+      referenceBiasError +=
+          weight * std::sqrt(std::max(0.0, 4 * d * d * v - 4 * w * v + 2 * v * v));
       crossError += weight * 2 * std::fabs(d) * std::sqrt(v);
-      differenceError += std::sqrt(w);
+      differenceError += std::sqrt(noise_ == PixelNoise::Joined ? v : w);
     }
-    sums_.relMseError += squaredErrorOfMean(squaredErrors_) + squared(crossError);
+    sums_.relMseError += squared(crossError);
+    sums_.referenceBiasError += squared(referenceBiasError);
+    sums_.differenceError += squared(differenceError);
+    if (noise_ == PixelNoise::Joined) {
+      sums_.squaredBiasError += squared(referenceBiasError);
+      return;
+    }
+    sums_.relMseError += squaredErrorOfMean(squaredErrors_);
     sums_.varianceError += squared(n_ / (n_ - 2)) * squaredErrorOfMean(deviations_);
     sums_.squaredBiasError += squared(biasError);
-    sums_.differenceError += squared(differenceError);
   }
 
   const Sums& sums() const { return sums_; }
@@ -81,21 +96,54 @@ class PixelSums {
  private:
   std::span<const Image> repeats_;
   const Reference& reference_;
+  PixelNoise noise_;
   double n_;
   std::vector<double> squaredErrors_, deviations_;  // of the current pixel, one for each repeat
   Sums sums_;
 };
 
+Sums sumsOf(std::span<const Image> repeats, const Reference& reference, PixelNoise noise) {
+  PixelSums pixels(repeats, reference, noise);
+  for (size_t pixel = 0; pixel < reference.mean.texels.size() / kChannels; ++pixel)
+    pixels.add(pixel);
+  return pixels.sums();
+}
+
+// Adds the squared errors that the repeats' noise causes in `sums`, from the jackknife over whole
+// repeats: with S(r) the sum without repeat r, (R - 1) / R times the scatter of S(r) (Efron and
+// Stein 1981). With few repeats it is itself uncertain: errors are enlarged by Student's quantile,
+// so that 1.96 of them are a 95% interval.
+void addJackknife(Sums& sums, std::span<const Image> repeats, const Reference& reference) {
+  const size_t count = repeats.size();
+  std::vector<Sums> without;
+  for (size_t r = 0; r < count; ++r) {
+    std::vector<Image> others(repeats.begin(), repeats.end());
+    others.erase(others.begin() + std::ptrdiff_t(r));
+    without.push_back(sumsOf(others, reference, PixelNoise::Joined));
+  }
+  const double n = double(count);
+  const boost::math::students_t student(n - 1);
+  const double factor = squared((n - 1) * boost::math::quantile(student, 0.975) / 1.96);
+  const auto squaredError = [&](double Sums::*member) {
+    std::vector<double> numbers;
+    for (const Sums& s : without) numbers.push_back(s.*member);
+    return factor * squaredErrorOfMean(numbers);
+  };
+  sums.relMseError += squaredError(&Sums::relMse);
+  sums.varianceError += squaredError(&Sums::variance);
+  sums.squaredBiasError += squaredError(&Sums::squaredBias);
+  sums.differenceError += squaredError(&Sums::difference);
+}
+
 }  // namespace
 
-BiasVariance biasVariance(std::span<const Image> repeats, const Reference& reference) {
+BiasVariance biasVariance(std::span<const Image> repeats, const Reference& reference,
+                          PixelNoise noise) {
   assert(repeats.size() >= 3);
-  PixelSums pixels(repeats, reference);
-  const size_t numbers = reference.mean.texels.size();
-  for (size_t pixel = 0; pixel < numbers / kChannels; ++pixel) pixels.add(pixel);
+  Sums sums = sumsOf(repeats, reference, noise);
+  if (noise == PixelNoise::Joined) addJackknife(sums, repeats, reference);
 
-  const Sums& sums = pixels.sums();
-  const double n = double(numbers);
+  const double n = double(reference.mean.texels.size());
   BiasVariance error;
   error.relMse = {sums.relMse / n, std::sqrt(sums.relMseError) / n};
   error.variance = {sums.variance / n, std::sqrt(sums.varianceError) / n};
@@ -104,7 +152,26 @@ BiasVariance biasVariance(std::span<const Image> repeats, const Reference& refer
                 std::sqrt(sums.differenceError) / std::fabs(sums.reference)};
   error.mse = sums.mse / n;
   error.referenceVariance = sums.referenceVariance / n;
+  error.referenceBiasError = std::sqrt(sums.referenceBiasError) / n;
   return error;
+}
+
+Estimate commonSquaredBias(std::span<const BiasVariance> errors) {
+  double weights = 0;
+  for (const BiasVariance& e : errors)
+    if (e.squaredBias.standardError > 0) weights += 1 / squared(e.squaredBias.standardError);
+  Estimate bias;
+  double own = 0, ofReference = 0;
+  for (const BiasVariance& e : errors) {
+    const double squaredError = squared(e.squaredBias.standardError);
+    if (!(squaredError > 0)) continue;
+    const double weight = 1 / squaredError / weights;
+    bias.mean += weight * e.squaredBias.mean;
+    own += squared(weight) * std::max(0.0, squaredError - squared(e.referenceBiasError));
+    ofReference += weight * e.referenceBiasError;
+  }
+  bias.standardError = std::sqrt(own + squared(ofReference));
+  return bias;
 }
 
 namespace {

@@ -19,23 +19,35 @@ struct Reference {
 // relMse, variance and squaredBias are means over pixels and channels of (...) / (reference^2 +
 // 0.01), without the variance of the reference itself: relMse = variance + squaredBias.
 struct BiasVariance {
-  Estimate relMse;               // of one image
-  Estimate variance;             // the part that more samples reduce
-  Estimate squaredBias;          // the part that remains; its estimate may be negative
-  Estimate bias;                 // mean(image - reference) / mean(reference)
-  double mse = 0;                // of one image; absolute, not relative
-  double referenceVariance = 0;  // relative, of the reference; it has been subtracted
+  Estimate relMse;                // of one image
+  Estimate variance;              // the part that more samples reduce
+  Estimate squaredBias;           // the part that remains; its estimate may be negative
+  Estimate bias;                  // mean(image - reference) / mean(reference)
+  double mse = 0;                 // of one image; absolute, not relative
+  double referenceVariance = 0;   // relative, of the reference; it has been subtracted
+  double referenceBiasError = 0;  // the part of squaredBias.standardError that its noise causes
 };
 
-// `repeats`: at least three independent RGB images of the reference's size. Pixels must be
-// independent of each other, as they are in this renderer; the channels of a pixel need not be.
+// Whether the errors of the pixels of an image are independent of each other.
+enum class PixelNoise {
+  Independent,  // as this renderer's are; the channels of a pixel need not be
+  Joined,       // a filter or records shared by pixels (denoising, irradiance cache) join them
+};
+
+// `repeats`: at least three independent RGB images of the reference's size.
 //
 // With d = mean of the R images - reference, s2 = their sample variance, v = squared error of the
-// reference and w = s2 / R + v, the squared bias is estimated by d^2 - w, without bias. The
-// standard error of relMse comes from each pixel's mean over the repeats, the one of the variance
-// from the jackknife, and the one of the squared bias from its variance under normal noise, 4
-// bias^2 w + 2 w^2.
-BiasVariance biasVariance(std::span<const Image> repeats, const Reference& reference);
+// reference and w = s2 / R + v, the squared bias is estimated by d^2 - w, without bias. With
+// independent noise the standard error of relMse comes from each pixel's mean over the repeats, the
+// one of the variance from the jackknife, and the one of the squared bias from its variance under
+// normal noise, 4 bias^2 w + 2 w^2; with joined noise all come from the jackknife over the repeats,
+// with R - 1 degrees of freedom.
+BiasVariance biasVariance(std::span<const Image> repeats, const Reference& reference,
+                          PixelNoise noise = PixelNoise::Independent);
+
+// The mean of one squared bias over images of several budgets, weighted by inverse variances. The
+// error that the reference causes is the same in all of them, so that no mean reduces it.
+Estimate commonSquaredBias(std::span<const BiasVariance> errors);
 
 // Rates of convergence: a power law fitted to errors.
 

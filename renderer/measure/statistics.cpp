@@ -90,18 +90,6 @@ Estimate meanOf(std::span<const double> numbers) {
   return {mean, n > 1 ? std::sqrt(scatter / (n - 1) / n) : 0};
 }
 
-Estimate weightedMean(std::span<const Estimate> estimates) {
-  double weights = 0, mean = 0;
-  for (const Estimate& e : estimates) {
-    if (!(e.standardError > 0)) continue;
-    const double weight = 1 / (e.standardError * e.standardError);
-    weights += weight;
-    mean += weight * e.mean;
-  }
-  if (!(weights > 0)) return {};
-  return {mean / weights, 1 / std::sqrt(weights)};
-}
-
 namespace {
 
 constexpr int kTile = Agreement::kTile;

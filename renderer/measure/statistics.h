@@ -48,10 +48,6 @@ struct Estimate {
 // The mean of independent numbers; its standard error is 0 for a single number.
 Estimate meanOf(std::span<const double> numbers);
 
-// The mean of estimates of one number, weighted by their inverse variances. Ignores estimates whose
-// standard error is 0; {0, 0} if none is left.
-Estimate weightedMean(std::span<const Estimate> estimates);
-
 // Tests whether two unbiased ways of rendering give the same image.
 
 // The result of Welch's t-tests on the mean luminance of every tile. If the images differ by noise

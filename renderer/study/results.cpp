@@ -54,7 +54,9 @@ Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<Store
   cell.prepareSeconds = mean(renders, &StoredRender::prepareSeconds);
   cell.noise = mean(renders, &StoredRender::noise);
   cell.invalidSamples = mean(renders, &StoredRender::invalidSamples) * double(renders.size());
-  cell.error = biasVariance(images(std::move(renders)), reference);
+  const bool joins = rowNamed(strategy, "output").joinsPixels();
+  cell.error = biasVariance(images(std::move(renders)), reference,
+                            joins ? PixelNoise::Joined : PixelNoise::Independent);
   return cell;
 }
 
@@ -84,15 +86,15 @@ void compareWithBaseline(std::vector<StrategyResult>& strategies, const std::str
 
 void fitConvergence(StrategyResult& strategy) {
   std::vector<ConvergencePoint> variances, errors;
-  std::vector<Estimate> biases;
+  std::vector<BiasVariance> biases;
   for (const Cell& cell : strategy.cells) {
     variances.push_back({cell.samples, cell.error.variance});
     errors.push_back({cell.samples, cell.error.relMse});
-    biases.push_back(cell.error.squaredBias);
+    biases.push_back(cell.error);
   }
   strategy.variance = fitPowerLaw(variances);
   strategy.relMse = fitPowerLaw(errors);
-  strategy.squaredBias = weightedMean(biases);
+  strategy.squaredBias = commonSquaredBias(biases);
   if (strategy.variance && !strategy.unbiased)
     strategy.biasEqualsNoise = biasEqualsNoise(*strategy.variance, strategy.squaredBias);
 }

@@ -120,6 +120,8 @@ bool Row::isBiased() const {
          has(Mode::Denoise) || diffuseDepth || specularDepth || cacheError;
 }
 
+bool Row::joinsPixels() const { return has(Mode::Denoise) || cacheError; }
+
 std::string Row::name() const {
   std::string name = strategy;
   if (integrator != IntegratorKind::Path)

@@ -88,7 +88,8 @@ struct Row {
   std::optional<float> cacheError;
 
   bool has(Mode mode) const;
-  bool isBiased() const;  // by more than its strategy
+  bool isBiased() const;     // by more than its strategy
+  bool joinsPixels() const;  // so that the errors of pixels depend on each other
   std::string name() const;
   // The row that stands for all with the same pixels but for their seeds: without what has no
   // effect with its integrator.
