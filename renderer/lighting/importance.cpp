@@ -142,25 +142,46 @@ bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
   return true;
 }
 
+namespace {
+
+// Directions and their positions on the probe, in lanes.
+struct Located {
+  std::array<Lanes3<Float8>, LightSource::kMaxMany / kWidth> directions;
+  std::array<Probe::PositionOf<Float8>, LightSource::kMaxMany / kWidth> positions;
+
+  template <class Ray>
+  Located(const Probe& probe, std::span<const Ray> rays) {
+    assert(rays.size() <= LightSource::kMaxMany);
+    forLanes(rays.size(), [&](size_t first, int count) {
+      Lanes3<Float8>& d = directions[first / kWidth];
+      d = Lanes3<Float8>{};
+      for (int k = 0; k < count; ++k) {
+        const vec3& wi = rays[first + size_t(k)].wi;
+        d.x[k] = wi.x, d.y[k] = wi.y, d.z[k] = wi.z;
+      }
+      const auto& p = positions[first / kWidth] = probe.locate(d);
+      for (int k = 0; k < count; ++k) probe.prefetch(p.column[k], p.row[k]);
+    });
+  }
+};
+
+}  // namespace
+
 void Importance::escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const {
-  assert(rays.size() <= kMaxMany);
-  std::array<Lanes3<Float8>, kMaxMany / kWidth> directions;
-  std::array<Probe::PositionOf<Float8>, kMaxMany / kWidth> positions;
+  const Located at(probe_, rays);
   forLanes(rays.size(), [&](size_t first, int count) {
-    Lanes3<Float8>& d = directions[first / kWidth];
-    d = Lanes3<Float8>{};
-    for (int k = 0; k < count; ++k) {
-      const vec3& wi = rays[first + size_t(k)].wi;
-      d.x[k] = wi.x, d.y[k] = wi.y, d.z[k] = wi.z;
-    }
-    const auto& p = positions[first / kWidth] = probe_.locate(d);
-    for (int k = 0; k < count; ++k) probe_.prefetch(p.column[k], p.row[k]);
-  });
-  forLanes(rays.size(), [&](size_t first, int count) {
-    const auto seen = field_.at(directions[first / kWidth], positions[first / kWidth]);
+    const auto seen = field_.at(at.directions[first / kWidth], at.positions[first / kWidth]);
     const Float8 pdf = seen.weight * scale_;
     const Lanes3<Float8>& c = seen.radiance;
     for (int k = 0; k < count; ++k) out[first + size_t(k)] = {{c.x[k], c.y[k], c.z[k]}, pdf[k]};
+  });
+}
+
+void Importance::backgroundMany(std::span<const Sight> rays, std::span<Rgb> out) const {
+  const Located at(probe_, rays);
+  forLanes(rays.size(), [&](size_t first, int count) {
+    const Lanes3<Float8> c = probe_.radiance(at.positions[first / kWidth]);
+    for (int k = 0; k < count; ++k) out[first + size_t(k)] = {c.x[k], c.y[k], c.z[k]};
   });
 }
 

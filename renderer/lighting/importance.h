@@ -30,6 +30,7 @@ class Importance : public LightSource {
                   std::span<DirectionSample> out) const override;
   void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const override;
   Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
+  void backgroundMany(std::span<const Sight> rays, std::span<Rgb> out) const override;
   bool unbiased() const override { return true; }
 
   // The sample from two numbers in [0, 1), and its pdf over solid angle; 0 for a black probe.

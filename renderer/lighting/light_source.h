@@ -106,6 +106,14 @@ class LightSource {
   // Radiance seen by the camera and by mirrors at `origin`, which sample() does not estimate.
   virtual Rgb background(const vec3&, const vec3&) const { return Rgb(0); }
 
+  // background() for up to kMaxMany rays.
+  struct Sight {
+    vec3 origin, wi;
+  };
+  virtual void backgroundMany(std::span<const Sight> rays, std::span<Rgb> out) const {
+    for (size_t i = 0; i < rays.size(); ++i) out[i] = background(rays[i].origin, rays[i].wi);
+  }
+
   // Specular lobes with a GGX alpha below this are treated as mirrors: they see background(), and
   // sample() does not light them. The scene's own lamps light them like all other lobes.
   virtual float mirrorAlpha() const { return 0; }

@@ -5,6 +5,7 @@
 
 #include <immintrin.h>
 
+#include <array>
 #include <cstdint>
 
 #include "math/vec.h"
@@ -36,6 +37,27 @@ struct LanesOf<Float8> {
   static Float8 gather(const float* p, Int8 index) {
     Float8 result;
     for (int k = 0; k < kCount; ++k) result[k] = p[index[k]];
+    return result;
+  }
+  // Column c in element c, of the rows of eight numbers that begin at `rows`, one for each lane.
+  static std::array<Float8, 8> columns(const std::array<const float*, kCount>& rows) {
+    const auto half = [&](int lane, int first) {  // of two rows, four lanes apart
+      return Float8(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows[lane] + first)),
+                                         _mm_loadu_ps(rows[lane + 4] + first), 1));
+    };
+    std::array<Float8, 8> result;
+    for (int first = 0; first < 8; first += 4) {
+      const Float8 a = half(0, first), b = half(1, first), c = half(2, first), d = half(3, first);
+      const Float8 ab0 = __builtin_shuffle(a, b, Int8{0, 8, 1, 9, 4, 12, 5, 13}),
+                   ab2 = __builtin_shuffle(a, b, Int8{2, 10, 3, 11, 6, 14, 7, 15}),
+                   cd0 = __builtin_shuffle(c, d, Int8{0, 8, 1, 9, 4, 12, 5, 13}),
+                   cd2 = __builtin_shuffle(c, d, Int8{2, 10, 3, 11, 6, 14, 7, 15});
+      constexpr Int8 kLow{0, 1, 8, 9, 4, 5, 12, 13}, kHigh{2, 3, 10, 11, 6, 7, 14, 15};
+      result[first] = __builtin_shuffle(ab0, cd0, kLow);
+      result[first + 1] = __builtin_shuffle(ab0, cd0, kHigh);
+      result[first + 2] = __builtin_shuffle(ab2, cd2, kLow);
+      result[first + 3] = __builtin_shuffle(ab2, cd2, kHigh);
+    }
     return result;
   }
 };

@@ -23,7 +23,7 @@ Probe::Probe(const Image& latLong, const Rotation& rotation, const Rgb& scale)
       height_(latLong.height),
       rotation_(rotation),
       turn_(rotation),
-      grid_(longArray<Rgb>(size_t(width_ + 1) * (height_ + 2))) {
+      grid_(longArray<Rgb>(size_t(width_ + 1) * (height_ + 2) + 1)) {
   if (!isFinite(scale) || std::min({scale.x, scale.y, scale.z}) < 0)
     throwInput("probe: the scale {} should be finite and not negative", text(scale));
 

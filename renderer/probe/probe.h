@@ -116,9 +116,6 @@ class Probe {
     __builtin_prefetch(top);
     __builtin_prefetch(top + width_ + 1);
   }
-  static Rgb interpolate(const Corners& c, float s, float t) {
-    return (1 - t) * ((1 - s) * c.c00 + s * c.c10) + t * ((1 - s) * c.c01 + s * c.c11);
-  }
   template <class F>
   static Lanes3<F> interpolate(const CornersOf<F>& c, F s, F t) {
     const auto mix = [&](F c00, F c10, F c01, F c11) {
@@ -129,16 +126,19 @@ class Probe {
   }
 
   // Radiance arriving from `direction` (unit, pointing away from the scene).
-  Rgb radiance(const vec3& direction) const {
-    const Position p = locate(direction);
-    return interpolate(corners(p.column, p.row), p.s, p.t);
+  Rgb radiance(const vec3& direction) const { return vectorOf(radiance(locate(direction))); }
+  template <class F>
+  Lanes3<F> radiance(const PositionOf<F>& p) const {
+    return interpolate(cornersOf(p), p.s, p.t);
   }
 
  private:
   int width_, height_;
   Rotation rotation_;
-  MapTurn turn_;           // as the rotation
-  std::vector<Rgb> grid_;  // (H + 2) rows of W + 1 corners; the last column repeats the first
+  MapTurn turn_;  // as the rotation
+  // (H + 2) rows of W + 1 corners, the last column repeating the first; and one more, for reads of
+  // eight numbers at once.
+  std::vector<Rgb> grid_;
 };
 
 template <class F>
@@ -188,16 +188,18 @@ Probe::CornersOf<F> Probe::cornersOf(const PositionOf<F>& p) const {
     const Corners c = corners(p.column, p.row);
     return {lanesOf(c.c00), lanesOf(c.c10), lanesOf(c.c01), lanesOf(c.c11)};
   } else {
-    CornersOf<F> result;
-    for (int k = 0; k < LanesOf<F>::kCount; ++k) {
-      const Corners c = corners(p.column[k], p.row[k]);
-      const auto set = [k](Lanes3<F>& lanes, const Rgb& rgb) {
-        lanes.x[k] = rgb.x, lanes.y[k] = rgb.y, lanes.z[k] = rgb.z;
-      };
-      set(result.c00, c.c00), set(result.c10, c.c10);
-      set(result.c01, c.c01), set(result.c11, c.c11);
-    }
-    return result;
+    // Two corners of three numbers each, and two numbers more.
+    const auto edge = [&](int rowsBelow) {
+      std::array<const float*, LanesOf<F>::kCount> first;
+      for (size_t k = 0; k < first.size(); ++k)
+        first[k] = &grid_[size_t(p.row[k] + rowsBelow) * (width_ + 1) + p.column[k]].x;
+      return LanesOf<F>::columns(first);
+    };
+    const auto top = edge(0), bottom = edge(1);
+    return {{top[0], top[1], top[2]},
+            {top[3], top[4], top[5]},
+            {bottom[0], bottom[1], bottom[2]},
+            {bottom[3], bottom[4], bottom[5]}};
   }
 }
 

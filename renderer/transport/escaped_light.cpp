@@ -6,16 +6,18 @@
 
 namespace chromeball {
 
-Rgb PathTracer::escapedRadiance(const PathState& state, PathContext& context) const {
-  const vec3 &origin = state.ray.origin, &direction = state.ray.direction;
-  if (state.depth == 0 && settings_.hideProbe) return Rgb(0);
-  const Rgb distant = distantRadiance(state, context);
-  if (state.lobes == Lobes::Narrow) {
+void PathTracer::addBackground(PathState& state, const Rgb& background,
+                               PathContext& context) const {
+  Rgb found(0);
+  if (state.depth > 0 || !settings_.hideProbe) {
     if (context.groups) [[unlikely]]
-      context.groups->addBackground(lighting_, {}, origin, direction, state.throughput);
-    return state.throughput * lighting_.background(origin, direction) + distant;
+      context.groups->addBackground(lighting_, {}, state.ray.origin, state.ray.direction,
+                                    state.throughput);
+    found = state.throughput * background + distantRadiance(state, context);
   }
-  return weighted(state, lighting_.escaped(state.from, direction), context) + distant;
+  if (state.first) [[unlikely]]
+    seen_.noteEscaped(state, found);
+  state.radiance += found;
 }
 
 // Light from World::sources, which light narrow lobes too: only the camera, and what it sees by

@@ -59,20 +59,25 @@ void PathBatch::select(uint32_t path, Task& task) {
 
 void PathBatch::endEscaped(Task& task) {
   Indices& escaped = shaded_;  // not in use yet
-  escapes_.size = escaped.size = 0;
+  Indices seen;                // by narrow lobes and the camera
+  escapes_.size = sights_.size = escaped.size = 0;
   size_t remaining = 0;
   for (const uint32_t i : active_.all()) {
     PathState& path = paths_[i];
     if (hits_[i]) {
       active_.items[remaining++] = i;
     } else if (path.lobes == Lobes::Narrow) {
-      task.tracer.vertex(path, std::nullopt, task.context);
+      seen.add(i);
+      sights_.add({path.ray.origin, path.ray.direction});
     } else {
       escaped.add(i);
       escapes_.add({&path.from, path.ray.direction});
     }
   }
   active_.size = remaining;
+  task.lighting().backgroundMany(sights_.all(), backgrounds_);
+  for (size_t k = 0; k < seen.size; ++k)
+    task.tracer.addBackground(paths_[seen.items[k]], backgrounds_[k], task.context);
   task.lighting().escapedMany(escapes_.all(), escaped_);
   for (size_t k = 0; k < escaped.size; ++k)
     task.tracer.addEscaped(paths_[escaped.items[k]], escaped_[k], task.context);

@@ -132,8 +132,10 @@ class PathBatch {
   List<Ray> rays_;
   List<uint32_t> keys_;
   List<LightSource::Escape> escapes_;
+  List<LightSource::Sight> sights_;
   List<glm::uvec2> numbers_;
   std::array<LightSource::Escaped, kMaxPaths> escaped_;
+  std::array<Rgb, kMaxPaths> backgrounds_;
   std::array<DirectionSample, kMaxPaths> samples_;
   std::array<std::optional<Hit>, kMaxPaths> found_;
   std::array<Rgb, kMaxPaths> transmittances_;

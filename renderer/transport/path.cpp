@@ -204,10 +204,10 @@ ExtendedPoint PathTracer::extendedPointAt(const PathState& state, const Instance
 bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
                         PathContext& context) const {
   if (!hit) {
-    const Rgb escaped = escapedRadiance(state, context);
-    if (state.first) [[unlikely]]
-      seen_.noteEscaped(state, escaped);
-    state.radiance += escaped;
+    if (state.lobes == Lobes::Narrow)
+      addBackground(state, lighting_.background(state.ray.origin, state.ray.direction), context);
+    else
+      addEscaped(state, lighting_.escaped(state.from, state.ray.direction), context);
     return false;
   }
   state.length += hit->distance;

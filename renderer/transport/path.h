@@ -106,10 +106,11 @@ class PathTracer {
   std::optional<Hit> skipHiddenBacks(PathState& state, std::optional<Hit> hit,
                                      PathContext& context) const;
 
-  // Adds the light that a ray finds if it hits nothing; not for narrow lobes and the camera.
-  // `escaped`: the probe's radiance and pdf.
+  // Adds the light that a ray finds if it hits nothing. `escaped`: the probe's radiance and pdf;
+  // `background`: what narrow lobes and the camera see.
   void addEscaped(PathState& state, const LightSource::Escaped& escaped,
                   PathContext& context) const;
+  void addBackground(PathState& state, const Rgb& background, PathContext& context) const;
 
   const World& world() const { return world_; }
   const LightSource& lighting() const { return lighting_; }
@@ -125,7 +126,6 @@ class PathTracer {
     return world_.sharedPlaces.contains(hit.instance, hit.triangle);
   }
   Surface surfaceOf(const PathState& state, const Hit& hit) const;
-  Rgb escapedRadiance(const PathState& state, PathContext& context) const;
   Rgb weighted(const PathState& state, const LightSource::Escaped& escaped,
                PathContext& context) const;
   Rgb distantRadiance(const PathState& state, PathContext& context) const;

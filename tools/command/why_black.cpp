@@ -80,8 +80,7 @@ void addProbe(const Probe& probe, std::vector<Target>& targets) {
     for (int column = 0; column < probe.width(); ++column) {
       Probe::Position middle{column, row, 0.5f, 0.5f, 0};
       directions.push_back(probe.direction(middle));
-      const Rgb radiance = Probe::interpolate(probe.corners(column, row), middle.s, middle.t);
-      sums.push_back(sum += double(luminance(radiance)) * double(middle.sinTheta));
+      sums.push_back(sum += double(luminance(probe.radiance(middle))) * double(middle.sinTheta));
     }
   for (int k = 0; k < kCount && sum > 0; ++k) {
     const auto at = std::ranges::lower_bound(sums, (k + 0.5) / kCount * sum);
