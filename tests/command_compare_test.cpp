@@ -192,6 +192,9 @@ TEST_F(SlowCommandCompare, badInputIsRejected) {
   expectInputError({"--strategies", "importance+blur"}, "is not a mode");
   expectInputError({"--strategies", "importance+"}, "is not a mode");
   expectInputError({"--strategies", "median-cut+guide"}, "guides renders with");
+  expectInputError({"--strategies", "importance+irradiance-cache:0.1", "--shutter", "0.5"},
+                   "open shutter");
+  expectInputError({"--strategies", "importance+denoise", "--samples", "1,4"}, "at least 2");
   expectInputError({"--reference-samples", "3"}, "--reference-samples");
   Image sunny = constantProbe({32, 16}, Rgb(0.1f));
   sunny.setRgb(9, 4, Rgb(1e4f));

@@ -3,6 +3,8 @@
 // deviation over independent seeds.
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "shared_data.h"
@@ -369,6 +371,29 @@ TEST(Noise, ToleratesPixelsWithoutAValidSample) {
       noiseQuantiles(film.errors(), squaredStandardErrors(film.errors()));
   EXPECT_NEAR(quantiles.median, 0.1, 1e-3);
   EXPECT_NEAR(quantiles.p95, 0.1, 1e-3);
+}
+
+// Samples that are all equal have no error, however their sums round, also beside rare light.
+TEST(Noise, IsZeroForEqualSamplesBesideRareLight) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(0.01f, 2);
+  Film film(16, 16);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) {
+      const Rgb color(unit(random), unit(random), unit(random));
+      const bool isRare = x % 5 == 2 && y % 5 == 2;
+      for (int half = 0; half < Film::kHalves; ++half) {
+        SampleSums sums;
+        for (int k = 0; k < 50; ++k) sums.add(isRare && half == 0 && k == 0 ? Rgb(1e3f) : color);
+        film.add(x, y, half, sums);
+      }
+    }
+  const Image variance = varianceImage(film.errors());
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) {
+      if (x % 5 == 2 && y % 5 == 2) continue;
+      EXPECT_EQ(variance.rgb(x, y), Rgb(0)) << x << ',' << y;
+    }
 }
 
 }  // namespace

@@ -11,11 +11,16 @@
 namespace chromeball {
 namespace {
 
-// The sum of (x - mean)^2 with Bessel's correction.
+// The sum of (x - mean)^2 with Bessel's correction; 0 where rounding errors may be all of it, so
+// that equal samples have none.
 glm::dvec4 squaredDeviations(const glm::dvec4& sumOfSquares, const glm::dvec3& sum, double count) {
   if (count < 2) return glm::dvec4(0);
   const glm::dvec4 mean(sum / count, luminance(sum / count));
-  return glm::max(sumOfSquares - count * mean * mean, 0.0) * (count / (count - 1));
+  glm::dvec4 deviations = sumOfSquares - count * mean * mean;
+  const glm::dvec4 rounding = count * std::numeric_limits<double>::epsilon() * sumOfSquares;
+  for (int c = 0; c < 4; ++c)
+    if (deviations[c] <= rounding[c]) deviations[c] = 0;
+  return deviations * (count / (count - 1));
 }
 
 }  // namespace

@@ -52,8 +52,8 @@ std::vector<Setting> commandRows() {
        .range = {.min = -36000, .max = 36000},
        .absent = "no turn",
        .help = "Turns the camera around the model, counter-clockwise seen from above. With "
-               "--frames: by equal steps from frame to frame, of which one more than there are "
-               "frames makes the whole turn.",
+               "--frames: by equal steps from frame to frame, as many as there are frames, so that "
+               "the last one ends a step before the whole turn.",
        .renderOnly = true},
       {.option = "orbit-step",
        .argument = "DEGREES",

@@ -24,6 +24,13 @@ uint64_t seedOf(const RenderKey& key, uint64_t studySeed) {
   return key.strategy == kReference ? seed | kTopBit : seed & ~kTopBit;
 }
 
+uint32_t Study::leastSamples() const {
+  uint32_t least = kMaxSamples;
+  for (const Budget& budget : budgets)
+    if (!budget.timed) least = std::min(least, uint32_t(budget.amount));
+  return least;
+}
+
 RenderKey Study::referencePart(int part) const {
   const int samples = (referenceSamples + kReferenceParts - 1) / kReferenceParts;
   return {kReference, {false, double(samples)}, part};

@@ -57,6 +57,8 @@ struct Study {
   // used.
   std::string identity;
 
+  // The smallest budget in samples; kMaxSamples if all are in seconds.
+  uint32_t leastSamples() const;
   RenderKey referencePart(int part) const;
   // All renders, in the order of rendering. Strategies alternate, so that a machine whose speed
   // drifts does not favour any of them.

@@ -31,7 +31,9 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
     RenderDescription whole;
     whole.surroundings = loaded.description.surroundings;
     whole.sources = loaded.description.sources;
+    whole.camera = loaded.description.camera;
     built.row.applyTo(whole);
+    if (name != kReference) whole.settings.samples = study.leastSamples();
     if (const Conflict* found = conflictIn(whole))
       throwInput("{}: {}: {}", location, row, found->why);
     built.prepareSeconds = watch.seconds();
