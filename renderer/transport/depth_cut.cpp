@@ -68,7 +68,7 @@ std::optional<DepthLimit> PathTracer::reachedLimit(const PathState& state, const
   const auto records = std::exchange(context.records, nullptr);
   const auto groups = std::exchange(context.groups, nullptr);
   const auto found = [&](const PathSettings& settings) {
-    return luminance(PathTracer(world_, lighting_, settings).follow(rest, hit, context));
+    return luminance(PathTracer(*this, settings).follow(rest, hit, context));
   };
   const float cut = found(farther) - found(limited);
   context.counts = counted;

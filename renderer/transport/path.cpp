@@ -44,6 +44,15 @@ PathTracer::PathTracer(const World& world, const LightSource& lighting,
       seen_(world, lighting),
       direct_(world, lighting, settings) {}
 
+PathTracer::PathTracer(const PathTracer& other, const PathSettings& settings)
+    : world_(other.world_),
+      lighting_(other.lighting_),
+      settings_(settings),
+      mirrorAlpha_(other.mirrorAlpha_),
+      limitsKinds_(settings.limitsKinds()),
+      seen_(other.seen_),
+      direct_(world_, lighting_, settings) {}
+
 std::optional<Hit> PathTracer::closestHit(const Ray& ray, PathContext& context) const {
   if (context.log) context.log->rays.push_back({ray, false});
   Hit hit;

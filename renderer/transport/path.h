@@ -60,6 +60,8 @@ class PathTracer {
  public:
   // `world` and `lighting` must outlive this.
   PathTracer(const World& world, const LightSource& lighting, const PathSettings& settings);
+  // Of the same light in the same world, but with other settings.
+  PathTracer(const PathTracer& other, const PathSettings& settings);
 
   // Radiance towards the camera along the ray of `start`.
   Rgb radiance(const PathState& start, const std::optional<Hit>& hit, PathContext& context) const;
