@@ -2,6 +2,8 @@
 // Baked light against closed forms.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "bake/lightmap.h"
 #include "bake/vertex_light.h"
 #include "bake_scenes.h"
@@ -51,6 +53,25 @@ TEST(Bake, FurnaceOfAnOpenPlane) {
   for (const PointResult& point : occlusion.result.points) EXPECT_EQ(point.mean(), Rgb(1));
   const Baked radiance(scene, white(), "bsdf", 32, {.what = BakedLight::Radiance, .samples = 16});
   for (const PointResult& point : radiance.result.points) EXPECT_NEAR(point.mean().z, 0.5f, 1e-6f);
+}
+
+// Every heuristic weighs samples in its own way, for the same mean.
+TEST(Bake, HeedsTheHeuristic) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {0, 0, 2}, {2, 0, 0}, {0, 0, -2});
+  const Image probe = gradientProbe({32, 16}, Rgb(1), {0, 0.6, 0.8});
+  std::set<float> firsts;
+  std::vector<double> means;
+  for (const Mis mis : {Mis::Balance, Mis::Power, Mis::Off}) {
+    const Baked baked(scene, probe, "uniform", 32, {.samples = 256, .mis = mis});
+    double sum = 0;
+    for (const PointResult& point : baked.result.points) sum += double(point.mean().y);
+    firsts.insert(baked.result.points.front().mean().y);
+    means.push_back(sum / double(baked.points.size()));
+  }
+  EXPECT_EQ(firsts.size(), 3u);
+  EXPECT_NEAR(means[1] / means[0], 1, 2e-3);
+  EXPECT_NEAR(means[2] / means[0], 1, 2e-3);
 }
 
 // Inside a closed white sphere of albedo a with nothing outside, lit by its own emission e: the

@@ -209,6 +209,24 @@ TEST_F(SlowCommandMessage, NamesWhatTookTheLightOfABlackImage) {
   expectNamed({"--light-from", "rest"}, "--light-from rest; leave it out", sun + "[0, 0, 1]\n");
 }
 
+// Lamps would not help.
+TEST_F(SlowCommandMessage, NamesMaterialsThatReflectNothing) {
+  const json black = {{"baseColorFactor", {0, 0, 0, 1}}, {"metallicFactor", 0}};
+  w_.add("materials", {{"pbrMetallicRoughness", black},
+                       {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}});
+  w_.add("materials", {{"pbrMetallicRoughness", black},
+                       {"extensions", {{"KHR_materials_unlit", json::object()}}}});
+  w_.add("materials", {{"pbrMetallicRoughness", black}});  // shines by its surface
+  for (const int material : {0, 1, 2}) {
+    w_.root["meshes"][0]["primitives"][0]["material"] = material;
+    const std::string error = render({}).error;
+    EXPECT_EQ(error.find("are black: their materials reflect nothing") != std::string::npos,
+              material < 2)
+        << error;
+    EXPECT_EQ(error.find("[[light]]"), std::string::npos) << error;
+  }
+}
+
 TEST_F(SlowCommandMessage, WarnsAboutASquareProbeReadAsLatLong) {
   const auto messages = [&](ImageSize size, const char* mapping) {
     writeImage(folder_ / "probe.exr", constantProbe(size, Rgb(1)));

@@ -92,6 +92,15 @@ TEST_F(CommandRelight, StagesNameSettingsThatTheyDoNotHeed) {
   EXPECT_EQ(stage("integrator = 'path'\nregularize = false\nguide = 'off'\nsingle_sided = 'off'\n"
                   "[lighting]\nmis = 'off'\n[output]\nfile = 'a.exr'\n"),
             "");
+  // The part of the light of a probe, which a stage does not have either.
+  const std::string suns = "[lighting]\nfrom = 'suns'\n";
+  for (const Strings& more : {Strings{}, Strings{folder_ / "v.glb"}}) {
+    const std::string error = stage(suns, more);
+    EXPECT_NE(error.find("s.toml:6: lighting.from has no effect on a "), std::string::npos)
+        << error;
+    EXPECT_EQ(
+        stage(suns + "[[light]]\ntype = 'sun'\nirradiance = 1\ndirection = [0, 0, 1]\n", more), "");
+  }
   EXPECT_TRUE(stage("max_diffuse_depth = 1\n", {folder_ / "v.glb"})
                   .ends_with("render.max_diffuse_depth has no effect here; `chromeball render` "
                              "heeds it\n"));

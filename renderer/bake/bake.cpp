@@ -150,8 +150,9 @@ class Baker {
 BakeResult bake(const World& world, const LightSource& lighting,
                 const std::vector<PlacedMesh>& meshes, const std::vector<BakePoint>& points,
                 const BakeSettings& settings, const Progress& progress) {
-  const PathTracer tracer(world, lighting,
-                          {.maxDepth = settings.maxDepth, .estimateDepthCut = false});
+  const PathTracer tracer(
+      world, lighting,
+      {.mis = settings.mis, .maxDepth = settings.maxDepth, .estimateDepthCut = false});
   const Baker baker(tracer, meshes, settings);
   BakeResult result;
   result.points.resize(points.size());

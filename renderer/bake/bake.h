@@ -52,7 +52,8 @@ struct BakeSettings {
   BakedLight what = BakedLight::Irradiance;
   uint32_t samples = 256;  // of each point, >= 2
   uint64_t seed = 0;
-  int maxDepth = 8;           // as PathSettings; 1: direct light
+  int maxDepth = 8;  // as PathSettings; 1: direct light
+  Mis mis = Mis::Balance;
   float distance = INFINITY;  // of ambient occlusion, metres
 };
 

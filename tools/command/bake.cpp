@@ -53,6 +53,7 @@ BakeSettings bakeSettings(const BakeOptions& a, const RenderDescription& descrip
   settings.samples = description.settings.samples;
   settings.seed = description.settings.seed;
   settings.maxDepth = description.settings.maxDepth;
+  settings.mis = description.settings.mis;
   if (distance) settings.distance = float(*distance);
   return settings;
 }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basis_job.h"
 
+#include <algorithm>
+
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "heeded_settings.h"
 
@@ -14,6 +18,15 @@ RenderDescription basisJob(const SceneOptions& options, SceneCommand command) {
                what);
   if (scene.surroundings)
     throwInput("{}: [surroundings] are not at infinity, as the light of a {} is", scene.path, what);
+  // Without the probe, and suns of their own, no part of the light is left to choose.
+  if (const auto from = scene.settings.find("lighting.from");
+      from &&
+      std::ranges::none_of(scene.lamps, [](const Lamp& lamp) { return lamp.sun.has_value(); })) {
+    scene.warnings.push_back(
+        fmt::format("{}: lighting.from has no effect on a {} without suns of the scene file",
+                    from->location, what));
+    scene.settings.erase("lighting.from");
+  }
   for (const char* name : {"probe.file", "probe.mapping", "probe.rotation", "probe.scale"})
     scene.settings.erase(name);
   dropUnheeded(scene, command);

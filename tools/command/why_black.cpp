@@ -120,6 +120,14 @@ bool isBehindWalls(const Accel& accel, const Surface& surface, const std::vector
   });
 }
 
+// Whether the surface reflects nothing, whatever light reaches it.
+bool absorbsAll(const Scene& scene, const Surface& surface) {
+  const MaterialPoint m = materialAt(scene, surface);
+  if (!isBlack(m.baseColor)) return false;
+  return surface.material->unlit ||
+         (m.metallic == 0 && m.dielectricF90 == 0 && !surface.material->extended);
+}
+
 // The reason why the camera sees no surface; empty if it may see one. The search ends at the first
 // visible surface.
 std::string whyNoneShows(const Scene& scene) {
@@ -205,6 +213,9 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
   if (description.probe.scale == glm::dvec3(0)) return what + "--probe-scale 0 turns the probe off";
   if (const auto limits = limitsOf(description.settings, result); !limits.empty())
     return what + noLightWith(limits);
+  const auto absorbing = std::ranges::count_if(
+      seen.black, [&](const Surface& surface) { return absorbsAll(loaded.scene, surface); });
+  if (2 * size_t(absorbing) > seen.black.size()) return what + "their materials reflect nothing";
   const std::vector<Target> lights = lightsOf(loaded);
   const auto behindWalls = std::ranges::count_if(
       seen.black, [&](const Surface& surface) { return isBehindWalls(accel, surface, lights); });
