@@ -187,6 +187,28 @@ TEST(SlowCommandAssemble, FisheyePhotographs) {
   EXPECT_LT(irradianceError(readImage(folder / "probe.exr"), map).mean, 0.003);
 }
 
+// A square sensor may be larger than the image circle.
+TEST(SlowCommandAssemble, FindsTheImageCircleInASquarePicture) {
+  const TemporaryFolder folder;
+  const Image map = studio(), whole = convert(map, Mapping::LatLong, Fisheye{180}, {240, 240});
+  Image square(300, 300, 3);
+  for (int y = 0; y < whole.height; ++y)
+    for (int x = 0; x < whole.width; ++x)
+      if (std::hypot(x - 119.5, y - 119.5) < 120) square.setRgb(x + 22, y + 37, whole.rgb(x, y));
+  writeImage(folder / "square.exr", square);
+  for (const std::vector<std::string>& circle :
+       {std::vector<std::string>{}, std::vector<std::string>{"--circle", "auto"}}) {
+    std::vector<std::string> words{
+        "probe",   "assemble", folder / "square.exr", "-o", folder / "probe.exr", "--from",
+        "fisheye", "--json"};
+    words.insert(words.end(), circle.begin(), circle.end());
+    const json found = parseJson(run(words).out)["views"][0]["circle"];
+    EXPECT_NEAR(double(found[0]), 142, 0.3);
+    EXPECT_NEAR(double(found[1]), 157, 0.3);
+    EXPECT_NEAR(double(found[2]), 120, 0.3);
+  }
+}
+
 // A lens that looks up has its camera below: elevation -90. With the other sign the sky would be
 // below the horizon.
 TEST(SlowCommandAssemble, WarnsOfAProbeThatIsUpsideDown) {

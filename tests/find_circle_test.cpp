@@ -49,6 +49,32 @@ TEST(FindCircle, InALargePicture) {
   expectCircle(photographOf(scene, 2000, 1500, circle), circle, 0.2, "large");
 }
 
+// A ball before a round table, whose outline is longer: the ball must be named.
+TEST(FindCircle, NamesASecondCircle) {
+  const Probe studio(studioProbe({512, 256}));
+  const Circle ball{{160.3, 120.2}, 70}, table{{164.1, 123}, 88};
+  Image image =
+      photographOf({studio, kParallel, {}, BallReflectance(dvec3(0.6)), 1, 0}, 320, 240, ball);
+  EXPECT_FALSE(findCircle(image).value().other);
+  const auto covered = [](const Circle& circle, double x, double y) {
+    return std::clamp(circle.radius - glm::distance(circle.centre, dvec2(x, y)) + 0.5, 0.0, 1.0);
+  };
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const double share = covered(table, x + 0.5, y + 0.5) - covered(ball, x + 0.5, y + 0.5);
+      image.setRgb(x, y, image.rgb(x, y) + Rgb(0.3f) * float(std::max(share, 0.0)));
+    }
+  const FoundCircle found = findCircle(image).value();
+  ASSERT_TRUE(found.other) << found.circle.centre.x << ' ' << found.circle.radius << ' '
+                           << found.support;
+  const bool isBall = glm::distance(found.circle.centre, ball.centre) < 1;
+  for (const auto& [seen, drawn] : {std::pair(found.circle, isBall ? ball : table),
+                                    std::pair(*found.other, isBall ? table : ball)}) {
+    EXPECT_LT(glm::distance(seen.centre, drawn.centre), 0.5);
+    EXPECT_NEAR(seen.radius, drawn.radius, 0.5);
+  }
+}
+
 // A ball in front of a pattern of stripes, with noise.
 TEST(FindCircle, InFrontOfAPattern) {
   const Probe studio(studioProbe({512, 256}));

@@ -93,7 +93,8 @@ void addAssembleOptions(Command command, AssembleArguments& arguments) {
   command
       .addOption("--circle", arguments.circles,
                  "X,Y,RADIUS[;...]: the outline of each ball, in pixels from the top left corner; "
-                 "else, or for auto, it is found")
+                 "else, or for auto, it is found; a fisheye's square picture without one is filled "
+                 "by its circle")
       .onePerName();
   command
       .addOption("--mask", arguments.masks,

@@ -67,14 +67,29 @@ Circle parseCircle(const std::string& text, const Image& image, const std::strin
   return circle;
 }
 
+// An image circle that fills the picture leaves no outline to find in it.
+std::optional<Circle> circleOfSquare(const Image& image) {
+  if (image.width != image.height) return std::nullopt;
+  return Circle{dvec2(0.5 * image.width), 0.5 * image.width};
+}
+
+// A circle within a fisheye's picture may also be the outline of a lamp.
+bool mayBeImageCircle(const Circle& circle, const Image& image) {
+  return circle.radius > 0.25 * std::min(image.width, image.height);
+}
+
 void setCircle(const std::string& given, bool isFisheye, AssemblyPhotograph& photograph) {
   const Image& image = photograph.image;
   if (given != "auto") {
     photograph.circle = parseCircle(given, image, photograph.file);
-  } else if (isFisheye && image.width == image.height) {
-    photograph.circle = {dvec2(0.5 * image.width), 0.5 * image.width};
   } else {
-    const std::optional<FoundCircle> found = findCircle(image);
+    std::optional<FoundCircle> found = findCircle(image);
+    if (isFisheye && found && !mayBeImageCircle(found->circle, image)) found.reset();
+    const std::optional<Circle> filling = isFisheye ? circleOfSquare(image) : std::nullopt;
+    if (!found && filling) {
+      photograph.circle = *filling;
+      return;
+    }
     if (!found)
       throwInput("{}: no {} found; give its circle in pixels: --circle X,Y,RADIUS", photograph.file,
                  isFisheye ? "image circle" : "ball");

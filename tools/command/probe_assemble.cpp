@@ -121,18 +121,23 @@ void warnOf(const Report& report) {
     const ViewMatch& match = report.matches[i];
     const double inside = shareInside(p.circle, p.image.width, p.image.height);
     if (inside < 0.999)
-      warn(fmt::format("{}: {:.2g}% of its circle is outside the picture, and blind", p.file,
+      warn(fmt::format("{}: {:.0f}% of its circle is outside the picture, and blind", p.file,
                        100 * (1 - inside)));
     if (p.found && p.found->standardError > kLargestDoubt)
       warn(fmt::format(
           "{}: the outline of the ball is doubtful, by {:.2g} pixels; see --preview, or give "
           "--circle X,Y,RADIUS",
           p.file, p.found->standardError));
+    if (p.found && p.found->other)
+      warn(fmt::format(
+          "{}: {:.1f},{:.1f},{:.1f} may be the outline as well; see --preview, or give --circle "
+          "X,Y,RADIUS",
+          p.file, p.found->other->centre.x, p.found->other->centre.y, p.found->other->radius));
     if (i == 0) continue;
     if (!report.arguments.keepAzimuth && !match.turned)
       warn(
           fmt::format("{}: no turn of up to {} degrees matches the photographs before "
-                      "(correlation {:.2f} over {:.2g}% of the sphere); its azimuth is kept",
+                      "(correlation {:.2f} over {:.0f}% of the sphere); its azimuth is kept",
                       p.file, kLargestTurn, match.correlation, 100 * match.overlap));
     if (!report.arguments.keepExposure && !match.exposed)
       warn(fmt::format("{}: hardly overlaps the photographs before; its exposure is kept", p.file));

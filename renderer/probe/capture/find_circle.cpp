@@ -24,6 +24,10 @@ constexpr double kLeastInside = 0.5;  // of the outline
 // more.
 constexpr double kLeastAgreement = 0.95, kLargestError = 1, kMostContradiction = 0.75;
 
+// Limits for a second circle: its support, and its radius over that of the first. Edges that a ball
+// reflects are shorter or smaller circles.
+constexpr double kLeastOfOther = 0.55, kSmallestOther = 0.4;
+
 // Limits for the deviations that repeat around the outline: for balls they are at most a third of
 // the mean square, for dodecagons 0.4 to 0.98 of it, and more than half a pixel.
 constexpr double kMostRipple = 0.5, kMostRippleShare = 0.38;
@@ -169,8 +173,15 @@ Circle fittedToEdges(const EdgeMap& edges, Circle circle) {
   return circle;
 }
 
-// The circles that pairs of edges propose, the best first.
-std::vector<Circle> proposals(const EdgeMap& edges) {
+// Whether the circles have different outlines: nowhere near each other for most of their length.
+bool differ(const Circle& a, const Circle& b) {
+  constexpr double kLeast = 0.06;  // of the radius
+  return glm::distance(a.centre, b.centre) + std::fabs(a.radius - b.radius) >
+         kLeast * std::max(a.radius, b.radius);
+}
+
+// The circles that pairs of edges propose, the best first; only those that differ from `known`.
+std::vector<Circle> proposals(const EdgeMap& edges, const std::optional<Circle>& known) {
   constexpr int kPairs = 200000;
   constexpr size_t kMost = 200;
   struct Ranked {
@@ -187,6 +198,7 @@ std::vector<Circle> proposals(const EdgeMap& edges) {
     const EdgePoint &a = any(), &b = any();
     const std::optional<Circle> circle = circleThrough(a, b);
     if (!circle || !hasPossibleRadius(edges, *circle)) continue;
+    if (known && !differ(*circle, *known)) continue;
     best.push_back({*circle, support(edges, *circle, 90).rank});
     std::push_heap(best.begin(), best.end(), isBetter);
     if (best.size() <= kMost) continue;
@@ -199,17 +211,18 @@ std::vector<Circle> proposals(const EdgeMap& edges) {
   return circles;
 }
 
-// The best circle of the copy, or nullopt.
-std::optional<FoundCircle> best(const EdgeMap& edges) {
+// The best circle of the copy that differs from `known`, or nullopt.
+std::optional<FoundCircle> best(const EdgeMap& edges, const std::optional<Circle>& known) {
   std::optional<FoundCircle> found;
   double bestRank = 0;
-  for (const Circle& proposal : proposals(edges)) {
+  for (const Circle& proposal : proposals(edges, known)) {
     const Circle circle = fittedToEdges(edges, proposal);
+    if (known && !differ(circle, *known)) continue;
     const Support here = support(edges, circle);
     if (here.rank <= bestRank || here.share < kLeastSupport || here.inside < kLeastInside ||
         !hasPossibleRadius(edges, circle))
       continue;
-    found = FoundCircle{circle, here.share, 0};
+    found = FoundCircle{circle, here.share, 0, {}};
     bestRank = here.rank;
   }
   return found;
@@ -249,31 +262,60 @@ bool isPolygon(const Image& image, const Circle& circle) {
   return outline && outline->ripple > kMostRipple && outline->rippleShare > kMostRippleShare;
 }
 
+// A picture and its copy.
+struct Search {
+  const Image& image;
+  int scale;
+  Image small;  // logarithm of luminance
+  EdgeMap edges;
+
+  Search(const Image& whole, int factor)
+      : image(whole),
+        scale(factor),
+        small(logarithm(meanLuminance(whole, factor))),
+        edges(small, kEdges) {}
+};
+
+// The best circle that differs from `known`, a circle of the picture.
+std::optional<FoundCircle> find(const Search& search, const std::optional<Circle>& known) {
+  const double scale = search.scale;
+  std::optional<Circle> inCopy = known;
+  if (inCopy) inCopy->centre /= scale, inCopy->radius /= scale;
+  std::optional<FoundCircle> found = best(search.edges, inCopy);
+  if (!found) return std::nullopt;
+  Circle& circle = found->circle;
+  circle.centre *= scale, circle.radius *= scale;
+  for (int finer = search.scale; finer >= 1; finer /= 2) {
+    circle.centre /= finer, circle.radius /= finer;
+    circle = refined(
+        finer == search.scale ? search.small : logarithm(meanLuminance(search.image, finer)),
+        circle);
+    circle.centre *= finer, circle.radius *= finer;
+  }
+  const std::optional<Outline> outline = fitOutline(search.image, circle);
+  if (!outline || found->support + outline->support < kLeastAgreement ||
+      !(outline->standardError < kLargestError) ||
+      outline->contradiction > kMostContradiction * outline->support ||
+      !isSharp(search.small, {outline->circle.centre / scale, outline->circle.radius / scale}) ||
+      isPolygon(search.image, outline->circle))
+    return std::nullopt;
+  return FoundCircle{outline->circle, outline->support, outline->standardError, {}};
+}
+
 }  // namespace
 
 std::optional<FoundCircle> findCircle(const Image& image) {
   const int longest = std::max(image.width, image.height);
   const int scale = (longest + kLongestSide - 1) / kLongestSide;
   if (std::min(image.width, image.height) / scale < 8) return std::nullopt;
-  const Image small = logarithm(meanLuminance(image, scale));
-  const EdgeMap edges(small, kEdges);
-  std::optional<FoundCircle> found = best(edges);
+  const Search search(image, scale);
+  std::optional<FoundCircle> found = find(search, {});
   if (!found) return std::nullopt;
-  Circle& circle = found->circle;
-  circle.centre *= scale, circle.radius *= scale;
-  for (int finer = scale; finer >= 1; finer /= 2) {
-    circle.centre /= finer, circle.radius /= finer;
-    circle = refined(finer == scale ? small : logarithm(meanLuminance(image, finer)), circle);
-    circle.centre *= finer, circle.radius *= finer;
-  }
-  const std::optional<Outline> outline = fitOutline(image, circle);
-  if (!outline || found->support + outline->support < kLeastAgreement ||
-      !(outline->standardError < kLargestError) ||
-      outline->contradiction > kMostContradiction * outline->support ||
-      !isSharp(small, {outline->circle.centre / double(scale), outline->circle.radius / scale}) ||
-      isPolygon(image, outline->circle))
-    return std::nullopt;
-  return FoundCircle{outline->circle, outline->support, outline->standardError};
+  const std::optional<FoundCircle> other = find(search, found->circle);
+  if (other && other->support > kLeastOfOther && differ(other->circle, found->circle) &&
+      other->circle.radius > kSmallestOther * found->circle.radius)
+    found->other = other->circle;
+  return found;
 }
 
 }  // namespace chromeball

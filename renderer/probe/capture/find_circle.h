@@ -13,6 +13,7 @@ struct FoundCircle {
   Circle circle;
   double support;        // the share of the outline inside the picture that is an edge, 0 to 1
   double standardError;  // of the centre's coordinates and the radius, in pixels
+  std::optional<Circle> other;  // one elsewhere that may be the outline as well
 };
 
 // The circle that most edges of the picture lie on: edges of the logarithm of luminance, in a copy
@@ -22,7 +23,8 @@ struct FoundCircle {
 // if no circle of at least 5% of the picture's shorter side in radius has half of its outline on
 // edges, if few arcs of the final fit agree on it, or only to more than a pixel, if as many arcs
 // lie elsewhere, as with an octagon, or alternate around it in equal steps, as with a dodecagon, or
-// if radiance changes there no faster than around it, as in smooth pictures.
+// if radiance changes there no faster than around it, as in smooth pictures. A second search, for
+// circles that differ from the first, finds `other`.
 std::optional<FoundCircle> findCircle(const Image& image);
 
 // The outline of a ball to a fraction of a pixel.
