@@ -7,6 +7,7 @@
 
 #include "base/json.h"
 #include "browser.h"
+#include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "json_file.h"
@@ -113,6 +114,41 @@ TEST_F(CommandBake, OtherOutputs) {
   EXPECT_FALSE(k.contains("images"));
   EXPECT_TRUE(k["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_1"));
   bake("r.glb", {"--what", "radiance", "--scale", "4"});
+}
+
+// Tangents that are not those of the UVs, on a mirrored node; and a texture that shows a line.
+TEST_F(CommandBake, KeptMaterialsKeepTheirTangentsAndTransforms) {
+  GltfWriter w;
+  nlohmann::json primitive = {{"attributes",
+                               {{"POSITION", w.vec3s({0, 0, 0, 1, 0, 0, 0, 1, 0})},
+                                {"NORMAL", w.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1})},
+                                {"TEXCOORD_0", w.vec2s({0, 0, 1, 0, 0, 1})}}},
+                              {"material", 0}};
+  const std::vector<float> tangents{0.6f, 0.8f, 0, 1, 0.6f, 0.8f, 0, 1, 0.6f, 0.8f, 0, 1};
+  primitive["attributes"]["TANGENT"] = w.accessor(w.view(tangents), kFloat, "VEC4", 3);
+  w.add("nodes", {{"mesh", w.mesh(primitive)}, {"scale", {-1, 1, 1}}});
+  writeImage(w.folder() / "map.png", constantProbe({4, 4}, Rgb(0.5f)));
+  w.add("images", {{"uri", "map.png"}});
+  w.add("textures", {{"source", 0}});
+  const nlohmann::json line = {
+      {"scale", {0, 0.6}}, {"rotation", 0.7853981}, {"offset", {0.2, 0.3}}};
+  w.add("materials", {{"normalTexture", {{"index", 0}}},
+                      {"pbrMetallicRoughness",
+                       {{"baseColorTexture",
+                         {{"index", 0}, {"extensions", {{"KHR_texture_transform", line}}}}}}}});
+  const std::string model = w.save(), baked = folder_ / "t.glb";
+  ASSERT_EQ(runCommand({"bake", model, "--probe", folder_ / "probe.exr", "--to", "vertices",
+                        "--keep-materials", "--samples", "4", "-o", baked})
+                .status,
+            0);
+  const Scene from = load(model), to = load(baked);
+  ASSERT_EQ(to.meshes[0].tangents.size(), 3u);
+  for (const vec4& t : to.meshes[0].tangents)
+    EXPECT_LT(glm::distance(t, vec4(-0.6f, 0.8f, 0, -1)), 1e-5f);
+  const TextureSlot &given = from.materials[0].baseColorTexture,
+                    &written = to.materials[0].baseColorTexture;
+  for (const vec2 uv : {vec2(0), vec2(1, 0), vec2(0, 1), vec2(0.3f, 0.7f)})
+    EXPECT_LT(glm::distance(given.transform(uv), written.transform(uv)), 1e-5f);
 }
 
 TEST_F(CommandBake, NeedsNoProbeForOcclusion) {

@@ -205,6 +205,12 @@ TEST(Depth, TheCommandReportsTheCutFraction) {
                                            "16x16", "--samples", "64", "--integrator", "direct"});
   EXPECT_NE(direct.error.find("--integrator direct cut about "), std::string::npos) << direct.error;
   EXPECT_NE(direct.error.find("--integrator path keeps it"), std::string::npos) << direct.error;
+  const CommandResult both =
+      runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size", "16x16", "--samples", "64",
+                  "--integrator", "direct", "--max-depth", "1"});
+  EXPECT_NE(both.error.find("--integrator path with a higher --max-depth keeps it"),
+            std::string::npos)
+      << both.error;
 }
 
 }  // namespace

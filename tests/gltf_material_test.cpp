@@ -322,6 +322,14 @@ TEST(GltfMaterial, InvalidNumbersAreRejectedOrClamped) {
   const Scene scene = loadWith(w, {{"pbrMetallicRoughness", {{"roughnessFactor", 1.5}}}});
   EXPECT_EQ(scene.materials[0].roughness, 1);
   EXPECT_EQ(w.warnings.size(), 1u);
+  // 0 and 1 upwards are valid.
+  for (const double ior : {0.0, 0.5, 0.99, 1.0, 1.33}) {
+    GltfWriter model;
+    const Scene read = loadWith(model, {{"extensions", {{"KHR_materials_ior", {{"ior", ior}}}}}});
+    const bool isClamped = ior > 0 && ior < 1;
+    EXPECT_EQ(read.materials[0].ior, isClamped ? 1 : float(ior));
+    EXPECT_EQ(model.warnings.size(), isClamped ? 1u : 0u) << ior;
+  }
 }
 
 TEST(GltfMaterial, TexturesByExtension) {

@@ -83,6 +83,9 @@ class Writer {
     for (const uint32_t vertex : vertices) positions.emplace_back(placed.positions[vertex]);
     attributes["POSITION"] = document_.accessor(positions);
     if (!placed.shadingNormals.empty()) addNormals(geometry, attributes);
+    if (file_.look != BakedLook::Unlit && !placed.tangents.empty() &&
+        !placed.shadingNormals.empty())
+      attributes["TANGENT"] = document_.accessor(gathered(placed.tangents, vertices));
     addUvs(geometry, attributes);
     if (!geometry.colors.empty())
       attributes["COLOR_0"] = document_.accessor(scaled(geometry.colors));

@@ -27,7 +27,11 @@ uint8_t byteOf(float unit) { return uint8_t(std::lround(255 * std::clamp(unit, 0
 // KHR_texture_transform: uv' = offset + R(rotation) S(scale) uv, with
 //   R S = (cos r sx, sin r sy; -sin r sx, cos r sy).
 Json transformOf(const TextureSlot& slot) {
-  const float rotation = std::atan2(-slot.uvRow1.x, slot.uvRow0.x);
+  // From the column of the larger scale: one of 0 has no direction.
+  const vec2 first(slot.uvRow0.x, slot.uvRow1.x), second(slot.uvRow0.y, slot.uvRow1.y);
+  const float rotation = glm::dot(first, first) >= glm::dot(second, second)
+                             ? std::atan2(-first.y, first.x)
+                             : std::atan2(second.x, second.y);
   const float cosine = std::cos(rotation), sine = std::sin(rotation);
   const float scaleX = cosine * slot.uvRow0.x - sine * slot.uvRow1.x;
   const float scaleY = sine * slot.uvRow0.y + cosine * slot.uvRow1.y;

@@ -94,6 +94,11 @@ PlacedMesh::PlacedMesh(const Scene& scene, int index) : instance(index) {
     const float length = glm::length(turned);
     shadingNormals.push_back(length > 0 ? turned / length : vec3(0));
   }
+  for (const vec4& t : mesh->tangents) {
+    const vec3 turned = linear * vec3(t);
+    const float length = glm::length(turned);
+    tangents.emplace_back(length > 0 ? turned / length : vec3(1, 0, 0), mirrored ? -t.w : t.w);
+  }
   for (const Triangle& t : mesh->triangles) {
     const glm::dvec3 a = positions[t.x];
     const glm::dvec3 normal = glm::cross(positions[t.y] - a, positions[t.z] - a);

@@ -20,8 +20,10 @@ struct PlacedMesh {
   bool mirrored = false;  // the instance turns triangles around: clockwise from the front
   std::vector<glm::dvec3> positions;
   std::vector<vec3> shadingNormals;  // by vertex, unit; empty: flat
-  std::vector<glm::dvec3> normals;   // by triangle, unit, on the front; 0 for one without an area
-  std::vector<double> areas;         // by triangle, m^2
+  // By vertex, unit, with the sign of the bitangent; empty: without normal map.
+  std::vector<vec4> tangents;
+  std::vector<glm::dvec3> normals;  // by triangle, unit, on the front; 0 for one without an area
+  std::vector<double> areas;        // by triangle, m^2
   // For each triangle, the triangles beyond its edges 0-1, 1-2 and 2-0. Vertices at the same
   // position count as one; an edge of three triangles or more joins none.
   std::vector<std::array<uint32_t, 3>> neighbours;

@@ -113,23 +113,21 @@ SampleSums PixelRenderer::renderBlock(PixelWorker& worker, const Block& block,
                                       const Beam& beam) const {
   const uint32_t samples = block.run.count;
   SampleSums sums;
-  std::array<CameraSample, PathBatch::kMaxPaths> cameras;
-  std::array<FirstHit, PathBatch::kMaxPaths> firsts;
   const bool wantsFirst = !result_.aovs.empty() || !result_.features.empty();
   for (uint32_t i = 0; i < samples; i += PathBatch::kMaxPaths) {
     const size_t count = std::min<size_t>(samples - i, PathBatch::kMaxPaths);
     for (size_t k = 0; k < count; ++k) {
-      firsts[k] = {};
-      cameras[k] = {.x = window_.x + block.x,
-                    .y = window_.y + block.y,
-                    .half = block.half,
-                    .ray = {},
-                    .hit = {},
-                    .beam = beam,
-                    .widening = wideningOf(block, i + uint32_t(k)),
-                    .first = wantsFirst ? &firsts[k] : nullptr};
+      if (wantsFirst) worker.firsts[k] = {};
+      worker.cameras[k] = {.x = window_.x + block.x,
+                           .y = window_.y + block.y,
+                           .half = block.half,
+                           .ray = {},
+                           .hit = {},
+                           .beam = beam,
+                           .widening = wideningOf(block, i + uint32_t(k)),
+                           .first = wantsFirst ? &worker.firsts[k] : nullptr};
     }
-    const auto taken = std::span(cameras).first(count);
+    const auto taken = std::span(worker.cameras).first(count);
     traceCameraRays(worker.context.sampler, i, taken);
     renderBatch(worker, block, taken, i, sums);
   }

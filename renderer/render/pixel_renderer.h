@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include "film/film.h"
@@ -66,6 +67,9 @@ class SampleSequence {
 struct PixelWorker {
   PathContext context;
   InvalidSamples invalid;
+  // Scratch.
+  std::array<CameraSample, PathBatch::kMaxPaths> cameras = {};
+  std::array<FirstHit, PathBatch::kMaxPaths> firsts = {};
 };
 
 class PixelRenderer {

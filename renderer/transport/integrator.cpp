@@ -2,6 +2,7 @@
 #include "transport/integrator.h"
 
 #include <cassert>
+#include <new>
 
 namespace chromeball {
 
@@ -9,7 +10,7 @@ void PathIntegrator::sampleMany(std::span<const CameraSample> cameras, uint32_t 
                                 PathContext& context, std::span<Sample> samples) const {
   thread_local PathBatch batch;
   batch.clear();
-  for (const CameraSample& camera : cameras) batch.add(camera.path(), camera.hit);
+  for (const CameraSample& camera : cameras) batch.add(camera);
   batch.trace(tracer_, firstSample, context);
   for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(batch.radiance(i));
 }
@@ -25,10 +26,10 @@ struct PathBatch::Task {
   RayMask visible() const { return tracer.settings().visible; }
 };
 
-void PathBatch::add(const PathState& start, const std::optional<Hit>& hit) {
+void PathBatch::add(const CameraSample& camera) {
   assert(count_ < kMaxPaths);
-  paths_[count_] = start;
-  hits_[count_] = hit;
+  new (&paths_[count_]) PathState(camera.path());  // in place, for a state is large
+  hits_[count_] = camera.hit;
   ++count_;
 }
 

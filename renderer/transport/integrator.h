@@ -91,8 +91,7 @@ class PathBatch {
  public:
   static constexpr size_t kMaxPaths = LightSource::kMaxMany;
 
-  // Adds a path from a camera ray and its hit.
-  void add(const PathState& start, const std::optional<Hit>& hit);
+  void add(const CameraSample& camera);
 
   // Traces all paths; path i is sample firstSample + i of the sampler's pixel.
   void trace(const PathTracer& tracer, uint32_t firstSample, PathContext& context);

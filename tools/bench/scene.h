@@ -110,7 +110,7 @@ inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
         batch->clear();
         for (size_t i = 0; i < rays.size(); ++i) {
           if (log) log->rays.push_back({rays[i], false});
-          batch->add(PathState{rays[i]}, hits[i]);
+          batch->add({.x = 0, .y = 0, .half = 0, .ray = rays[i], .hit = hits[i]});
         }
         batch->trace(tracer, 0, context);
         Rgb sum(0);

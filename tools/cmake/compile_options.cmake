@@ -51,6 +51,13 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND chromeball_compile_options --param=ggc-min-heapsize=1048576)
 endif()
 
+# GCC copies and clears structures of 32 to 8192 bytes by `rep` instructions, which take some 30 cycles
+# to begin. By vectors instead, a render takes a twentieth less time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+  set(strategy vector_loop:1024:noalign,libcall:-1:noalign)
+  list(APPEND chromeball_compile_options -mmemcpy-strategy=${strategy} -mmemset-strategy=${strategy})
+endif()
+
 function(chromeball_compile target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_features(${target} PUBLIC cxx_std_20)

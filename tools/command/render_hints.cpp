@@ -37,7 +37,8 @@ std::optional<std::string> whyWhite(const LoadedScene& loaded, const RenderResul
 }
 
 bool isOfDirect(DepthLimit limit, const RenderSettings& settings) {
-  return limit == DepthLimit::Depth && settings.path().maxDepth < settings.maxDepth;
+  return limit == DepthLimit::Depth && settings.integrator == IntegratorKind::Direct &&
+         settings.maxDepth > 0;
 }
 
 void addDepthCuts(const RenderSettings& settings, const DepthCut& cut, Messages& messages) {
@@ -46,7 +47,9 @@ void addDepthCuts(const RenderSettings& settings, const DepthCut& cut, Messages&
     const DepthLimit limit = DepthLimit(i);
     const double fraction = cut.fraction(limit);
     if (!(fraction > kMinFraction)) continue;
-    const char* remedy = isOfDirect(limit, settings) ? "--integrator path" : "a higher one";
+    const char* remedy = !isOfDirect(limit, settings) ? "a higher one"
+                         : settings.maxDepth > 1      ? "--integrator path"
+                                                 : "--integrator path with a higher --max-depth";
     messages.push_back(
         {Message::Kind::Warning, fmt::format("{} cut about {:.3g}% of the light; {} keeps it",
                                              limitGiven(limit, settings), 100 * fraction, remedy)});

@@ -26,6 +26,15 @@ double shareInside(const Circle& circle, int width, int height) {
   return inside / all;
 }
 
+namespace {
+
+const char* decodingOf(const std::optional<Transfer>& stated) {
+  if (!stated || stated == Transfer::Srgb) return "decoded from sRGB";
+  return stated == Transfer::Linear ? "linear, as it states" : "decoded as it states";
+}
+
+}  // namespace
+
 LoadedPhotograph loadPhotograph(const std::filesystem::path& path) {
   ImageFile file = readImageFile(path);
   LoadedPhotograph photograph;
@@ -33,9 +42,9 @@ LoadedPhotograph loadPhotograph(const std::filesystem::path& path) {
   if (file.integers)
     photograph.messages.push_back(
         {Message::Kind::Warning,
-         fmt::format("{}: has integer texels: decoded from sRGB, without the response of the "
-                     "camera, and clipped at white; use an HDR image",
-                     path.string())});
+         fmt::format("{}: has integer texels: {}, without the response of the camera, and clipped "
+                     "at white; use an HDR image",
+                     path.string(), decodingOf(file.transfer))});
   photograph.image = colorOf(std::move(file), path);
   const RepairReport repaired = repair(photograph.image, false);
   if (repaired.total() > 0)

@@ -45,7 +45,10 @@ double ResponseCurve::logExposure(int channel, double level) const {
   if (kind_ == Kind::Srgb) return std::log(double(srgbToLinear(float(level))));
   const double at = std::min(level, 1.0) * (kLevels - 1);
   const int below = std::min(int(at), kLevels - 2);
-  return glm::mix(table_[size_t(below)][channel], table_[size_t(below) + 1][channel], at - below);
+  const double low = table_[size_t(below)][channel], high = table_[size_t(below) + 1][channel];
+  // A level without exposure has no logarithm to start from: exposure rises linearly from it.
+  if (std::isinf(low)) return high + std::log(at - below);
+  return glm::mix(low, high, at - below);
 }
 
 ResponseCurve ResponseCurve::read(const std::filesystem::path& path) {

@@ -94,7 +94,11 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
 
   if (const Value* e = findExtension(source.extensions, "KHR_materials_ior"); e && !glossiness) {
     m.ior = member(file_, *e, "ior", 1.5, 0, 1e6, where);
-    if (m.ior != 0) m.ior = std::max(m.ior, 1.0f);
+    if (m.ior != 0 && m.ior < 1) {
+      file_.warnOnce(
+          fmt::format("{}: {} is clamped to the range 1 to 1e+06, or 0", where + ".ior", m.ior));
+      m.ior = 1;
+    }
   }
   if (const Value* e = findExtension(source.extensions, "KHR_materials_specular"); e && !glossiness)
     readSpecular(*e, where, m);
