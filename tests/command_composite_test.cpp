@@ -180,6 +180,19 @@ TEST_F(CommandComposite, LocalNodesIncludeTheirDescendants) {
                    "every node is part of the local scene");
 }
 
+// A name of the local scene may be that of an empty or hidden node.
+TEST_F(CommandComposite, WarnsOfALocalSceneWithoutSurfaces) {
+  const int pier = model_.add("nodes", {{"name", "pier"}});
+  model_.root["scenes"] = {{{"nodes", {0, 2, pier}}}};
+  model_.save();
+  const auto warning = [&](const std::string& local) {
+    return render(scene("plate = \"plate.exr\"\nlocal_scene = \"" + local + "\""), {}).error;
+  };
+  EXPECT_NE(warning("pier").find("local_scene: `pier` has no visible surface"), std::string::npos)
+      << warning("pier");
+  EXPECT_EQ(warning("ground").find("has no visible surface"), std::string::npos);
+}
+
 TEST_F(SlowCommandComposite, RejectsInvalidInput) {
   expectInputError(
       scene("plate = \"plate.exr\"\nlocal_scene = [\"grund\"]"),

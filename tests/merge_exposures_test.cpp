@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "bracket.h"
+#include "image/io/write_image.h"
 #include "image/tonemap.h"
 #include "probe/capture/align.h"
 #include "probe/capture/exposure.h"
@@ -91,6 +92,35 @@ TEST(MergeExposures, SaturatedPixelsKeepTheBoundOfTheShortestExposure) {
   EXPECT_EQ(merged.underexposedPixels, 1u);
   EXPECT_EQ(merged.uses[0].saturated, 2u);
   EXPECT_EQ(merged.uses[1].weighted, 2u);
+}
+
+// A larger photograph is reduced by means of light, not of levels, and what covers a saturated
+// pixel is saturated: a small lamp in a checkerboard has the light of the smaller photograph.
+TEST(MergeExposures, ReducedPhotographsKeepTheirLight) {
+  const TemporaryFolder folder;
+  Image scene(64, 64, 3);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const bool isLamp = x % 16 == 5 && y % 16 == 9;
+      scene.setRgb(x, y, isLamp ? Rgb(20) : Rgb((x + y) % 2 ? 0.6f : 0.02f));
+    }
+  const Image small = resampled(scene, 32, 32);
+  constexpr float kShort = 1 / 8.f;
+  Image dark = small;
+  for (float& texel : dark.texels) texel *= kShort;
+  writeImage(folder / "long.png", scene);
+  writeImage(folder / "short.png", dark);
+  PhotographLevels read = readLevels({folder / "long.png", folder / "short.png"}, {}, true);
+  ASSERT_EQ(read.levels[0].width, 32);
+  std::vector<Exposure> exposures(2);
+  for (size_t i = 0; i < 2; ++i) {
+    exposures[i].levels = read.levels[i];
+    exposures[i].factor = dvec3(i == 0 ? 1 : kShort);
+  }
+  const Image merged = mergeExposures(exposures, ResponseCurve::srgb()).radiance;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x)
+      EXPECT_NEAR(merged.rgb(x, y).y / small.rgb(x, y).y, 1, 0.04) << x << ',' << y;
 }
 
 TEST(MergeExposures, WhatIsNoNumberTellsNothing) {

@@ -76,6 +76,30 @@ TEST(SolveResponse, IsRecoveredFromNoisyPhotographs) {
   }
 }
 
+// Each exposure has an aperture, and so a falloff, of its own.
+TEST(SolveResponse, TakesFlatFieldsIntoAccount) {
+  const Image radiance = ramp(512, 256, 0.003, 60);
+  std::vector<Image> flats;
+  std::vector<Exposure> exposures;
+  for (size_t i = 0; i < kFive.size(); ++i) {
+    const double falloff = 0.15 * double(kFive.size() - 1 - i);  // in a corner
+    Image flat(radiance.width, radiance.height, 3), seen = radiance;
+    for (int y = 0; y < flat.height; ++y)
+      for (int x = 0; x < flat.width; ++x) {
+        const double r2 = std::pow(2 * (x + 0.5) / flat.width - 1, 2) +
+                          std::pow(2 * (y + 0.5) / flat.height - 1, 2);
+        flat.setRgb(x, y, Rgb(float(1 - falloff * r2 / 2)));
+        seen.setRgb(x, y, radiance.rgb(x, y) * flat.rgb(x, y));
+      }
+    flats.push_back(std::move(flat));
+    exposures.push_back(bracket(seen, {kFive[i]}, encodeFilm).front());
+  }
+  for (size_t i = 0; i < flats.size(); ++i) exposures[i].flatField = &flats[i];
+  EXPECT_LT(largestError(solved(exposures), encodeFilm), 1);
+  for (Exposure& exposure : exposures) exposure.flatField = nullptr;
+  EXPECT_GT(largestError(solved(exposures), encodeFilm), 3);
+}
+
 TEST(SolveResponse, WhatDoesNotDetermineACurveIsRejected) {
   const Image radiance = ramp(64, 32, 0.003, 60);
   EXPECT_THROW(solved(bracket(radiance, {1})), InputError);

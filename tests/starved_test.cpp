@@ -100,6 +100,7 @@ TEST_F(SlowStarved, UnwritablePathsAreReportedBeforeRendering) {
 
 // The memory that a map of the size takes is known before it is made.
 TEST_F(SlowStarved, MapsBeyondTheMemoryAreRefusedWithTheirAmount) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
   const TemporaryFolder out;
   const CommandLimits limits{.memory = size_t(1) << 30};
   const std::string map = out / "map.exr", size = "16384x8192";

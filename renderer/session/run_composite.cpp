@@ -187,6 +187,12 @@ void prepareLocalScene(LoadedScene& loaded) {
     localScene.push_back({kGroundNode, location});
   }
   loaded.isObject = findObjects(scene, localScene, location);
+  if (!localScene.empty() && std::ranges::count(loaded.isObject, false) == 0)
+    loaded.messages.push_back(
+        {Message::Kind::Warning,
+         fmt::format("{}: local_scene: `{}` has no visible surface, so that no object changes "
+                     "its light",
+                     localScene.front().location, localScene.front().name)});
   if (composite.choosesReflectance && hasLamps(scene))
     composite.reflectance = CompositeDescription::Reflectance::Plate;
   if (composite.reflectance == CompositeDescription::Reflectance::Flat) {

@@ -151,16 +151,19 @@ double weightOf(int level) { return hatWeight(float(level) / (kLevels - 1)); }
 class PixelEquations {
  public:
   PixelEquations(std::span<const Exposure> exposures, int channel) {
-    for (const Exposure& exposure : exposures)
-      logFactors_.push_back(std::log(exposure.factor[channel]));
     const Image& first = exposures.front().levels;
     const int step = sampleStep(first);
     std::vector<int> levels(exposures.size());
+    std::vector<double> logFactors(exposures.size());
     for (int y = step / 2; y < first.height; y += step)
       for (int x = step / 2; x < first.width; x += step) {
-        for (size_t i = 0; i < levels.size(); ++i)
+        for (size_t i = 0; i < levels.size(); ++i) {
           levels[i] = levelOf(exposures[i].levels.at(x, y)[channel]);
-        add(levels);
+          logFactors[i] = std::log(exposures[i].factor[channel]);
+          if (const Image* flat = exposures[i].flatField)
+            logFactors[i] += std::log(flat->at(x, y)[channel]);
+        }
+        add(levels, logFactors);
       }
   }
 
@@ -168,7 +171,7 @@ class PixelEquations {
   LeastSquares& equations() { return equations_; }
 
  private:
-  void add(const std::vector<int>& levels) {
+  void add(const std::vector<int>& levels, const std::vector<double>& logFactors) {
     double sum = 0;
     for (const int level : levels) sum += weightOf(level) * weightOf(level);
     if (sum == 0) return;
@@ -177,12 +180,11 @@ class PixelEquations {
         const double product = weightOf(levels[i]) * weightOf(levels[j]);
         if (product == 0 || levels[i] == levels[j]) continue;
         const LeastSquares::Term row[] = {{levels[i], 1}, {levels[j], -1}};
-        equations_.add(row, logFactors_[i] - logFactors_[j], product * product / sum);
+        equations_.add(row, logFactors[i] - logFactors[j], product * product / sum);
         weight_ += product * product / sum;
       }
   }
 
-  std::vector<double> logFactors_;
   LeastSquares equations_{kLevels};
   double weight_ = 0;
 };

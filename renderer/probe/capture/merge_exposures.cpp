@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "image/image.h"
 #include "image/io/exif.h"
+#include "image/tonemap.h"
 
 namespace chromeball {
 namespace {
@@ -111,11 +112,34 @@ float largestTexel(const std::vector<Image>& images) {
   return largest;
 }
 
-void toSmallestSize(std::vector<Image>& images) {
+// Levels of the means of linear light. A pixel that covers a saturated one is saturated: the light
+// of that is unknown.
+Image levelsOfMeans(const Image& levels, int width, int height, bool isSrgb) {
+  Image light = levels, saturated = levels;
+  for (size_t i = 0; i < levels.texels.size(); ++i) {
+    if (isSrgb) light.texels[i] = srgbToLinear(levels.texels[i]);
+    saturated.texels[i] = levels.texels[i] >= kSaturated;
+  }
+  light = resampled(light, width, height);
+  saturated = resampled(saturated, width, height);
+  for (size_t i = 0; i < light.texels.size(); ++i) {
+    if (isSrgb) light.texels[i] = linearToSrgb(light.texels[i]);
+    if (saturated.texels[i] > 0) light.texels[i] = 1;
+  }
+  return light;
+}
+
+// Takes the levels for encoded as sRGB unless they state to be linear, or have more than 8 bits.
+void toSmallestSize(PhotographLevels& photographs) {
+  std::vector<Image>& images = photographs.levels;
+  const bool isSrgb =
+      photographs.transfer ? photographs.transfer == Transfer::Srgb : photographs.bits == 8;
   int width = images.front().width, height = images.front().height;
   for (const Image& image : images)
     width = std::min(width, image.width), height = std::min(height, image.height);
-  for (Image& image : images) image = resampled(image, width, height);
+  for (Image& image : images)
+    if (image.width != width || image.height != height)
+      image = levelsOfMeans(image, width, height, isSrgb);
 }
 
 }  // namespace
@@ -159,16 +183,19 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
     for (float& texel : image.texels)
       if (!(texel >= 0)) ++invalid, texel = 0;
   }
-  if (resizes) toSmallestSize(result.levels);
   if (result.bits > 0 && white)
     throwInput("white: {} has {}, which are white at 1; it is for floats, leave it out",
                files.front(), kindOf(result.bits));
-  if (result.bits > 0) return result;
+  if (result.bits > 0) {
+    if (resizes) toSmallestSize(result);
+    return result;
+  }
   result.white = white.value_or(std::max(1.0f, largestTexel(result.levels)));
   for (Image& image : result.levels)
     forRanges(image.texels.size(), [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) image.texels[i] /= result.white;
     });
+  if (resizes) toSmallestSize(result);
   return result;
 }
 

@@ -49,10 +49,11 @@ struct PhotographLevels {
 };
 
 // `resizes`: photographs of several sizes are crops of one thing, such as a ball, and are resampled
-// to the smallest width and height. `white` is the white level of float files; the default is 1, or
-// their largest texel if that is higher. Integers are white at 1. Throws InputError if a file is no
-// image, if sizes, kinds of numbers, primaries or stated transfers differ, and for a `white` of
-// integers.
+// to the smallest width and height: means of linear light, with 8 bits taken for sRGB-encoded
+// unless they state otherwise; a pixel that covers a saturated one is saturated. `white` is the
+// white level of float files; the default is 1, or their largest texel if that is higher. Integers
+// are white at 1. Throws InputError if a file is no image, if sizes, kinds of numbers, primaries or
+// stated transfers differ, and for a `white` of integers.
 PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
                             bool resizes = false);
 
