@@ -48,15 +48,14 @@ struct LanesOf<Float8> {
     std::array<Float8, 8> result;
     for (int first = 0; first < 8; first += 4) {
       const Float8 a = half(0, first), b = half(1, first), c = half(2, first), d = half(3, first);
-      const Float8 ab0 = __builtin_shuffle(a, b, Int8{0, 8, 1, 9, 4, 12, 5, 13}),
-                   ab2 = __builtin_shuffle(a, b, Int8{2, 10, 3, 11, 6, 14, 7, 15}),
-                   cd0 = __builtin_shuffle(c, d, Int8{0, 8, 1, 9, 4, 12, 5, 13}),
-                   cd2 = __builtin_shuffle(c, d, Int8{2, 10, 3, 11, 6, 14, 7, 15});
-      constexpr Int8 kLow{0, 1, 8, 9, 4, 5, 12, 13}, kHigh{2, 3, 10, 11, 6, 7, 14, 15};
-      result[first] = __builtin_shuffle(ab0, cd0, kLow);
-      result[first + 1] = __builtin_shuffle(ab0, cd0, kHigh);
-      result[first + 2] = __builtin_shuffle(ab2, cd2, kLow);
-      result[first + 3] = __builtin_shuffle(ab2, cd2, kHigh);
+      const Float8 ab0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
+                   ab2 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15),
+                   cd0 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13),
+                   cd2 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+      result[first] = __builtin_shufflevector(ab0, cd0, 0, 1, 8, 9, 4, 5, 12, 13);
+      result[first + 1] = __builtin_shufflevector(ab0, cd0, 2, 3, 10, 11, 6, 7, 14, 15);
+      result[first + 2] = __builtin_shufflevector(ab2, cd2, 0, 1, 8, 9, 4, 5, 12, 13);
+      result[first + 3] = __builtin_shufflevector(ab2, cd2, 2, 3, 10, 11, 6, 7, 14, 15);
     }
     return result;
   }

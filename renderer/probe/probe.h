@@ -3,6 +3,7 @@
 // mirrors, the camera and the irradiance.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "image/image.h"
