@@ -129,17 +129,14 @@ Image levelsOfMeans(const Image& levels, int width, int height, bool isSrgb) {
   return light;
 }
 
-// Takes the levels for encoded as sRGB unless they state to be linear, or have more than 8 bits.
 void toSmallestSize(PhotographLevels& photographs) {
   std::vector<Image>& images = photographs.levels;
-  const bool isSrgb =
-      photographs.transfer ? photographs.transfer == Transfer::Srgb : photographs.bits == 8;
   int width = images.front().width, height = images.front().height;
   for (const Image& image : images)
     width = std::min(width, image.width), height = std::min(height, image.height);
   for (Image& image : images)
     if (image.width != width || image.height != height)
-      image = levelsOfMeans(image, width, height, isSrgb);
+      image = levelsOfMeans(image, width, height, photographs.isSrgb());
 }
 
 }  // namespace
@@ -186,11 +183,7 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
   if (result.bits > 0 && white)
     throwInput("white: {} has {}, which are white at 1; it is for floats, leave it out",
                files.front(), kindOf(result.bits));
-  if (result.bits > 0) {
-    if (resizes) toSmallestSize(result);
-    return result;
-  }
-  result.white = white.value_or(std::max(1.0f, largestTexel(result.levels)));
+  if (result.bits == 0) result.white = white.value_or(std::max(1.0f, largestTexel(result.levels)));
   for (Image& image : result.levels)
     forRanges(image.texels.size(), [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) image.texels[i] /= result.white;

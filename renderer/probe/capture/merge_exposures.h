@@ -46,6 +46,9 @@ struct PhotographLevels {
   float white = 1;                          // the texel of the files that is level 1
   std::vector<size_t> invalid;  // channels of each file that are NaN or negative: level 0
   Messages messages;            // of the readers
+
+  // As the files state, or else by their bits.
+  bool isSrgb() const { return transfer ? *transfer == Transfer::Srgb : bits == 8; }
 };
 
 // `resizes`: photographs of several sizes are crops of one thing, such as a ball, and are resampled

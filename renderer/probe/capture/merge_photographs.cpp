@@ -120,8 +120,7 @@ std::string defaultResponse(const PhotographSeries& series, const PhotographLeve
         "{}: states that its levels are neither linear nor encoded as sRGB (gAMA, cICP); give "
         "the response",
         series.files.front());
-  if (photographs.transfer) return photographs.transfer == Transfer::Srgb ? "srgb" : "linear";
-  return photographs.bits == 8 ? "srgb" : "linear";
+  return photographs.isSrgb() ? "srgb" : "linear";
 }
 
 ResponseCurve responseOf(const PhotographSeries& series, const PhotographLevels& photographs,
