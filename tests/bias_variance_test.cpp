@@ -86,25 +86,35 @@ void expectCovers(int covered, int studies, const char* what, double maximum = 1
   EXPECT_LE(fraction, maximum) << what;
 }
 
+bool holds(const Estimate& e, double truth) { return e.low() <= truth && truth <= e.high(); }
+
+// The studies whose intervals contain the true values.
+struct Covered {
+  int relMse = 0, variance = 0, squaredBias = 0, bias = 0;
+
+  void add(const BiasVariance& error, const World::Expected& exact) {
+    relMse += holds(error.relMse, exact.variance + exact.squaredBias);
+    variance += holds(error.variance, exact.variance);
+    squaredBias += holds(error.squaredBias, exact.squaredBias);
+    bias += holds(error.bias, exact.bias);
+  }
+};
+
 TEST(BiasVariance, intervalsContainTheTrueValues) {
   constexpr int kStudies = 500;
   for (const float biasScale : {0.0f, 0.05f, 0.5f}) {
     SCOPED_TRACE(biasScale);
     World world(7, biasScale);
     const World::Expected exact = world.expected(1);
-    int relMse = 0, variance = 0, squaredBias = 0, bias = 0;
+    Covered covered;
     for (int study = 0; study < kStudies; ++study) {
       const BiasVariance error = biasVariance(world.repeats(4, 1), world.reference(0.2f));
-      const auto holds = [](const Estimate& e, double t) { return e.low() <= t && t <= e.high(); };
-      relMse += holds(error.relMse, exact.variance + exact.squaredBias);
-      variance += holds(error.variance, exact.variance);
-      squaredBias += holds(error.squaredBias, exact.squaredBias);
-      bias += holds(error.bias, exact.bias);
+      covered.add(error, exact);
     }
-    expectCovers(relMse, kStudies, "relMse");
-    expectCovers(variance, kStudies, "variance");
-    expectCovers(squaredBias, kStudies, "squared bias");
-    expectCovers(bias, kStudies, "bias");
+    expectCovers(covered.relMse, kStudies, "relMse");
+    expectCovers(covered.variance, kStudies, "variance");
+    expectCovers(covered.squaredBias, kStudies, "squared bias");
+    expectCovers(covered.bias, kStudies, "bias");
   }
 }
 
@@ -114,22 +124,18 @@ TEST(BiasVariance, intervalsContainTheTrueValuesIfPixelsAreJoined) {
     SCOPED_TRACE(count);
     World world(23, 0.3f);
     const World::Expected exact = world.expected(1);
-    int relMse = 0, variance = 0, squaredBias = 0, bias = 0;
+    Covered covered;
     for (int study = 0; study < kStudies; ++study) {
       std::vector<Image> repeats;
       while (repeats.size() < count) repeats.push_back(world.renderInBlocks());
       const BiasVariance error = biasVariance(repeats, world.reference(0.2f), PixelNoise::Joined);
-      const auto holds = [](const Estimate& e, double t) { return e.low() <= t && t <= e.high(); };
-      relMse += holds(error.relMse, exact.variance + exact.squaredBias);
-      variance += holds(error.variance, exact.variance);
-      squaredBias += holds(error.squaredBias, exact.squaredBias);
-      bias += holds(error.bias, exact.bias);
+      covered.add(error, exact);
     }
-    expectCovers(relMse, kStudies, "relMse");
+    expectCovers(covered.relMse, kStudies, "relMse");
     // The variance's estimate is skewed, as every one from few repeats is.
-    EXPECT_GE(variance, 0.85 * kStudies);
-    expectCovers(squaredBias, kStudies, "squared bias");
-    expectCovers(bias, kStudies, "bias");
+    EXPECT_GE(covered.variance, 0.85 * kStudies);
+    expectCovers(covered.squaredBias, kStudies, "squared bias");
+    expectCovers(covered.bias, kStudies, "bias");
   }
 }
 
@@ -145,7 +151,7 @@ TEST(BiasVariance, theReferencesErrorRemainsInTheBiasOfAllBudgets) {
     for (int budget = 0; budget < 6; ++budget)
       errors.push_back(biasVariance(world.repeats(4, 0.4f), reference));
     const Estimate bias = commonSquaredBias(errors);
-    covered += bias.low() <= exact && exact <= bias.high();
+    covered += holds(bias, exact);
   }
   expectCovers(covered, kStudies, "squared bias", 0.99);
 }
