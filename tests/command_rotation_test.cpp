@@ -163,6 +163,7 @@ TEST_F(Turned, WrongRotationsAndScalesAreExplained) {
   file("scale = []\n", "`scale` must be a number, or three (r, g, b), not an array of 0");
   file("rotation_keys = [[0, 1], [1, [1, 2]]]\n", "`rotation_keys` must be one angle, three");
   file("rotation_keys = [[0, [1, 1, 1, 1]]]\n", "scene.toml:8: the quaternion (1, 1, 1, 1) has");
+  file("rotation_keys = []\n", "`rotation_keys` must be ");
   expectError({"probe", "convert", probe_, path("x.exr"), "--to", "lat-long", "--rotation", "1,2"},
               "--rotation: `1,2` should be YAW or YAW,PITCH,ROLL in degrees, or a quaternion");
   expectError({"probe", "convert", probe_, path("x.exr"), "--to", "lat-long", "--scale", "1e39"},

@@ -262,6 +262,47 @@ TEST(ImageHeaders, PhotographsAreOfWhatTheirPngStates) {
   EXPECT_NE(problem(codePoints(12, 16), codePoints(12, 16), "srgb").find("PQ"), std::string::npos);
 }
 
+// A filter of 1/2, 1/4 and 1/5 is in front of the photographs' channels, not of Rec. 709's: in
+// files of exposures merged, and in photographs themselves.
+TEST(ImageHeaders, FiltersAreCalibratedInTheChannelsOfThePhotographs) {
+  const TemporaryFolder folder;
+  const std::string p3 = chunk("gAMA", {100000}) +
+                         chunk("cHRM", {31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000});
+  const auto file = [&](const std::string& name, const std::array<uint8_t, 3>& texel) {
+    return saved(folder / name, png(texel, p3));
+  };
+  const auto merged = [&](const std::string& name, const std::array<uint8_t, 3>& half,
+                          const std::array<uint8_t, 3>& full) {
+    const CommandResult result =
+        runCommand({"probe", "merge", file("half.png", half), file("full.png", full), "--exposures",
+                    "1,2", "--unaligned", "-o", folder / name});
+    EXPECT_EQ(result.status, 0) << result.error;
+    return folder / name;
+  };
+  const auto transmission = [&](const std::string& with, const std::string& without) {
+    return runCommand({"probe", "merge", "--calibrate-filter", with, without}).out;
+  };
+  const std::string expected = "transmission    0.5,0.25,0.2 of 1 pixels\n";
+  const std::string without = merged("without.exr", {100, 80, 60}, {200, 160, 120});
+  EXPECT_EQ(transmission(merged("with.exr", {50, 20, 12}, {100, 40, 24}), without), expected);
+  EXPECT_EQ(transmission(file("a.png", {50, 20, 12}), file("b.png", {100, 80, 60})), expected);
+  const std::string other = saved(folder / "c.png", png({100, 80, 60}, chunk("gAMA", {100000})));
+  const CommandResult mixed = runCommand({"probe", "merge", "--calibrate-filter", without, other});
+  EXPECT_EQ(mixed.status, 2);
+  EXPECT_NE(mixed.error.find("primaries are not those of"), std::string::npos) << mixed.error;
+}
+
+// What covers a pixel of a photograph is no light that its sensor met.
+TEST(ImageHeaders, LevelsOfPhotographsAreNotMultipliedByAlpha) {
+  const TemporaryFolder folder;
+  const std::vector<uint8_t> bytes = encodePng(1, 1, 4, std::vector<uint8_t>{200, 100, 50, 128});
+  const std::string path = saved(folder / "a.png", std::string(bytes.begin(), bytes.end()));
+  const ImageFile levels = readImageFile(path, IntegerTexels::Levels);
+  constexpr std::array<uint8_t, 4> kStored = {200, 100, 50, 128};
+  for (size_t c = 0; c < 4; ++c) EXPECT_FLOAT_EQ(levels.image.texels[c], float(kStored[c]) / 255);
+  EXPECT_FLOAT_EQ(readImageFile(path).image.texels[0], srgbToLinear(200 / 255.f) * 128 / 255);
+}
+
 // The texel in the upper left of the picture, by where the orientation says that it is stored.
 TEST(ImageHeaders, OrientationTurnsAsExifSays) {
   Image stored(3, 2, 1);

@@ -69,7 +69,7 @@ ModelEntry readModel(const Entry& entry, const std::string& name, Origins& origi
 
 void readProbeTurns(const Entry& keys, SceneFile& scene) {
   if (!keys) return;
-  if (!keys.isArray()) keys.mustBe(keys.setting->form);
+  if (!keys.isArray() || keys.isArrayOf(0)) keys.mustBe(keys.setting->form);
   forEach(keys, [&](const Entry& key) {
     if (!key.isArrayOf(2)) key.mustBe("a pair [seconds, rotation]");
     const double seconds = key.element(0).number();

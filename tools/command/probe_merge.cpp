@@ -87,6 +87,18 @@ void print(const PhotographSeries& series, const MergedPhotographs& merged) {
              merged.image.underexposedPixels, double(merged.image.underexposedPixels) / pixels);
 }
 
+// Of a merged image, from the channels of its photographs: those that a filter is applied in.
+constexpr const char* kToRec709 = "photographsToRec709";
+
+Metadata metadataOf(const MergedPhotographs& merged) {
+  if (merged.toRec709 == glm::dmat3(1)) return {};
+  Matrix44 matrix{};  // rows
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 4; ++k)
+      matrix[size_t(4 * i + k)] = i < 3 && k < 3 ? float(merged.toRec709[k][i]) : float(i == k);
+  return {{kToRec709, matrix}};
+}
+
 void merge(const MergeArguments& arguments) {
   if (arguments.files.empty()) throwInput("probe merge: give the photographs to merge");
   if (arguments.output.empty()) throwInput("probe merge: give -o, the image to write");
@@ -109,22 +121,47 @@ void merge(const MergeArguments& arguments) {
   if (!arguments.responseOutput.empty()) merged.response.write(arguments.responseOutput);
   print(writeImage(arguments.output, OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
                                                   {"clipped", "", std::move(merged.image.clipped)}},
-                                                 {},
+                                                 metadataOf(merged),
                                                  {},
                                                  {}}),
         false);
 }
 
+glm::dmat3 photographsToRec709(const ImageFile& file, const std::string& path) {
+  glm::dmat3 result = file.primaries ? toRec709(*file.primaries).value() : glm::dmat3(1);
+  const auto found = file.metadata.find(kToRec709);
+  if (found == file.metadata.end()) return result;
+  const auto* matrix = std::get_if<Matrix44>(&found->second);
+  if (matrix)
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) result[k][i] = (*matrix)[size_t(4 * i + k)];
+  if (!matrix || !(std::abs(glm::determinant(result)) > 0))
+    throwInput("{}: its {} is no matrix that can be inverted", path, kToRec709);
+  return result;
+}
+
+struct View {
+  Image channels;  // of the photographs
+  std::optional<Image> clipped;
+  glm::dmat3 toRec709;
+};
+
+View readView(const std::string& path) {
+  ImageFile file = openImageFile(path);
+  View view{{}, layerOf(file, "clipped", path), photographsToRec709(file, path)};
+  view.channels = colorOf(std::move(file), path);
+  if (view.toRec709 != glm::dmat3(1)) convertColor(view.channels, glm::inverse(view.toRec709));
+  return view;
+}
+
 void calibrate(const MergeArguments& arguments) {
   constexpr double kTolerance = 0.02;
   arguments.checkCalibration();
-  const auto read = [](const std::string& path) {
-    ImageFile file = openImageFile(path);
-    std::optional<Image> clipped = layerOf(file, "clipped", path);
-    return std::pair{colorOf(std::move(file), path), std::move(clipped)};
-  };
-  const auto [with, clippedWith] = read(arguments.calibration[0]);
-  const auto [without, clippedWithout] = read(arguments.calibration[1]);
+  const auto [with, clippedWith, space] = readView(arguments.calibration[0]);
+  const auto [without, clippedWithout, otherSpace] = readView(arguments.calibration[1]);
+  if (space != otherSpace)
+    throwInput("{}: its photographs' primaries are not those of {}; give two images of one camera",
+               arguments.calibration[0], arguments.calibration[1]);
   if (with.width != without.width || with.height != without.height)
     throwInput("{}: is {} x {}, but {} is {} x {}; give two images of one view",
                arguments.calibration[0], with.width, with.height, arguments.calibration[1],

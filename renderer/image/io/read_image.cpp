@@ -187,7 +187,9 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
     readSamples<uint8_t>(*reader, decode, file.image);
   else
     readSamples<uint16_t>(*reader, decode, file.image);
-  if (layout.hasAlpha()) associate(file.image, layout.channels - 1);
+  // Levels are those of the sensor: no light to be weighted by what covers the pixel.
+  if (layout.hasAlpha() && integers != IntegerTexels::Levels)
+    associate(file.image, layout.channels - 1);
   file.image = oriented(std::move(file.image), exifOrientation(bytes));
   return file;
 }
@@ -256,7 +258,8 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
     for (size_t i = 0; i < file.image.texels.size(); ++i)
       if (int(i % header.channels.size()) != header.alphaChannel)
         file.image.texels[i] = srgbToLinear(file.image.texels[i]);
-  if (header.unassociatedAlpha) associate(file.image, header.alphaChannel);
+  if (header.unassociatedAlpha && !(file.integers && integers == IntegerTexels::Levels))
+    associate(file.image, header.alphaChannel);
   file.image = oriented(std::move(file.image), exifOrientation(bytes));
   return file;
 }

@@ -182,7 +182,8 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   merged.image = mergeExposures(exposures, merged.response);
   for (float& texel : merged.image.radiance.texels) texel *= merged.white;  // the files' scale
   // Comes last: exposure, saturation and black refer to the files' channels.
-  if (photographs.primaries) convertColor(merged.image.radiance, toRec709(photographs.primaries));
+  merged.toRec709 = toRec709(photographs.primaries);
+  if (photographs.primaries) convertColor(merged.image.radiance, merged.toRec709);
   merged.agreements = exposureAgreement(exposures, merged.response);
 
   const size_t pixels = merged.image.clipped.texels.size();

@@ -47,6 +47,7 @@ struct MergedPhotographs {
   ResponseCurve response = ResponseCurve::linear();
   std::string responseName;
   float white = 1;
+  glm::dmat3 toRec709{1};  // from the photographs' channels
   Messages messages;
 };
 
