@@ -188,6 +188,14 @@ TEST(Bake, FilterKeepsConstantLightAndReducesNoise) {
   }
   RecordProperty("relMSE ratio", std::to_string(before / after));
   EXPECT_LT(after, 0.25 * before);
+
+  for (const float scale : {0x1p-100f, 0x1p-50f, 0x1p70f, 0x1p100f}) {
+    BakeResult scaled = baked.result;
+    for (PointResult& point : scaled.points)
+      for (Rgb& half : point.halves) half *= scale;
+    const std::vector<Rgb> found = filteredLight(baked.points, scaled, 64);
+    for (size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i], scale * filtered[i]) << scale;
+  }
 }
 
 TEST(Bake, FillReachesThePaddingAndBuriedTexels) {

@@ -143,7 +143,7 @@ TEST(Denoise, ScalesWithTheRadiance) {
   const auto ramp = [](int x, int) { return 1 + 0.05f * float(x); };
   const DenoiseInput input = noisy(0.2f, ramp);
   const Denoised expected = run(input);
-  for (const float scale : {0x1p-30f, 0x1p-3f, 0x1p35f}) {
+  for (const float scale : {0x1p-100f, 0x1p-30f, 0x1p-3f, 0x1p35f, 0x1p100f}) {
     DenoiseInput scaled = input;
     for (Image* image : {&scaled.parts[0].mean, &scaled.parts[0].half})
       for (float& texel : image->texels) texel *= scale;

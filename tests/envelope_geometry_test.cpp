@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 
 #include "envelope.h"
@@ -46,6 +47,75 @@ TEST(SlowEnvelopeGeometry, SceneScaleFrom1e_4To1e7) {
     EXPECT_LT(std::sqrt(squares / double(mean.texels.size())), 4e-3) << scale;
     EXPECT_NEAR(validMean(r) / luminance(meanColor(reference)), 1, 1e-3) << scale;
   }
+}
+
+// The squared length of the cross product of a triangle's edges is beyond the range of a float from
+// 4e9 m on, and below it up to 3e-10 m.
+TEST(EnvelopeGeometry, NormalsOfTrianglesOfAnySize) {
+  for (const float size : {1e-13f, 1e-11f, 1e-5f, 1.0f, 1e5f, 1e9f, 1e11f, 1e13f}) {
+    Scene scene;
+    addQuad(scene, addMaterial(scene, lambert(Rgb(0.6f))), {-size, 0, size}, {2 * size, 0, 0},
+            {0, size, -2 * size});
+    const Surface surface =
+        surfaceAt(scene, scene.instances[0], 0, vec2(0.3f), vec3(0.6f, 0.8f, 0));
+    const vec3 expected(0, 2 / std::sqrt(5.0f), 1 / std::sqrt(5.0f));
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(surface.geometricNormal[k], expected[k], 1e-6f) << size;
+      EXPECT_NEAR(surface.normal[k], expected[k], 1e-6f) << size;
+    }
+  }
+}
+
+// Vertex normals under a transform by such a factor keep their direction.
+TEST(EnvelopeGeometry, VertexNormalsUnderTransformsOfAnyScale) {
+  for (const float scale : {1e-10f, 1.0f, 1e10f}) {
+    Scene scene;
+    const int material = addMaterial(scene, lambert(Rgb(0.6f)));
+    addSphere(scene, material, vec3(0), 1 / scale, 8);
+    Instance& instance = scene.instances[0];
+    instance.toWorld = Transform{};
+    instance.toWorld->linear = glm::mat3(scale);
+    const Surface surface = surfaceAt(scene, instance, 60, vec2(0.3f), vec3(0, 1, 0));
+    const vec3 expected = glm::normalize(surface.position);
+    EXPECT_GT(glm::distance(surface.geometricNormal, surface.normal), 0.01f) << scale;
+    EXPECT_LT(glm::distance(absolute(surface.normal), absolute(expected)), 0.02f) << scale;
+  }
+}
+
+// The ground of a composite reaches far beyond the model; so does a disc of light.
+TEST(SlowEnvelopeGeometry, GroundAndDiscsOfAnySize) {
+  const TemporaryFolder folder;
+  const std::string image = folder / "a.exr", scene = folder / "a.toml", probe = folder / "p.exr";
+  writeImage(probe, gradientProbe({64, 32}, Rgb(1), {0.2, 0.7, 0.3}));
+  const auto meanOf = [&](const std::string& text, const std::vector<std::string>& options,
+                          const std::string& layer) {
+    std::ofstream(scene) << text;
+    std::vector<std::string> words{"render",    scene, "--size", "32x24",
+                                   "--samples", "64",  "-o",     image};
+    words.insert(words.end(), options.begin(), options.end());
+    const CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0) << result.error;
+    return luminance(
+        meanColor(layer.empty() ? readImage(image) : *findLayer(readImageFile(image), layer)));
+  };
+  const std::string model = std::string(kSourceDir) + "/scenes/models/pillars.gltf";
+  const auto ground = [&](double scale) {
+    return meanOf(fmt::format("[[model]]\nfile = '{}'\nscale = {:.1f}\n[probe]\nfile = '{}'\n",
+                              model, scale, probe),
+                  {"--shadow-catcher", "ground", "--aov", "l_noobj"}, "l_noobj");
+  };
+  const double expected = ground(1);
+  EXPECT_GT(expected, 0.05);
+  EXPECT_NEAR(ground(1e7) / expected, 1, 1e-3);
+  const auto disc = [&](double radius) {
+    return meanOf(fmt::format("model = '{}'\n[[light]]\ntype = 'disc'\nposition = [0, {:.1f}, 0]\n"
+                              "direction = [0, -1, 0]\nradius = {:.1f}\nradiance = 1\n",
+                              model, radius / 10, radius),
+                  {}, "");
+  };
+  const double lit = disc(1e6);
+  EXPECT_GT(lit, 0.05);
+  EXPECT_NEAR(disc(1e12) / lit, 1, 1e-3);
 }
 
 // A model of 1 m at a distance of 1e6 m from the origin renders the same image as at the origin,

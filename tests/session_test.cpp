@@ -82,6 +82,21 @@ TEST(Session, GivesTheBitsOfARenderInTheForeground) {
 }
 
 // Each snapshot has more samples than the one before, and none is invalid; the render's bits stay.
+TEST(Session, RefusesArraysThatReachTooFar) {
+  Stage stage;
+  Scene far;
+  addQuad(far, addMaterial(far, lambert(Rgb(0.5f))), {-3e9f, 0, 3e9f}, {6e9f, 0, 0}, {0, 0, -6e9f});
+  stage.floor = far.meshes.shared(0);
+  try {
+    Session session(stageDescription(stage));
+    session.prepare();
+    ADD_FAILURE() << "3e9 m";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("the limit is 1e+09"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Session, SnapshotsGrow) {
   const RenderDescription description = stageDescription(Stage(), 1024);
   Session session(description);

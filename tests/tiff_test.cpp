@@ -9,6 +9,7 @@
 #include "icc_file.h"
 #include "image/image.h"
 #include "image/io/read_image.h"
+#include "image/io/tiff_block.h"
 #include "run_command.h"
 #include "tiff_file.h"
 
@@ -293,6 +294,31 @@ TEST_F(Tiff, DamagedDeflateIsRefused) {
     for (const std::string& texels : {whole + "more", flushed})
       EXPECT_EQ(read({deflated(texels, compression)}).image.texels, read({rgb()}).image.texels);
   }
+}
+
+// Of several values the field has the offset: that of BitsPerSample is below 65536 here, so that
+// the upper half of a big-endian one is 0.
+TEST_F(Tiff, TheFirstOfSeveralValuesIsReadWhereTheyAre) {
+  const std::string field("\0\0\0\x40", 4), pad(64 - 26, '\0');
+  std::string file("MM\0*\0\0\0\x08\0\x01", 10);
+  file += std::string("\x01\x02\0\x03\0\0\0\x03", 8) + field + std::string(4, '\0') + pad;
+  file += std::string("\0\x10\0\x10\0\x10", 6);
+  const auto* bytes = reinterpret_cast<const uint8_t*>(file.data());
+  const TiffBlock block(std::span(bytes, file.size()));
+  EXPECT_EQ(block.find(block.firstDirectory(), 258), 16);
+}
+
+// libtiff reverses the bits before it inflates; the module that reads these returns black.
+TEST_F(Tiff, DeflateOfReversedBitsIsRefusedByName) {
+  TiffImage image = rgb({{266, 3, {2}}});
+  image.compression = 8;
+  image.texels = deflatedOf(image.texels);
+  for (char& byte : image.texels) {
+    int reversed = 0;
+    for (int bit = 0; bit < 8; ++bit) reversed |= (byte >> bit & 1) << (7 - bit);
+    byte = char(reversed);
+  }
+  refuse({image}, "FillOrder 2");
 }
 
 // TIFF 6.0, section 20: rational numbers.

@@ -198,6 +198,32 @@ TEST(Transmission, nestedBodiesUseRelativeIndices) {
   EXPECT_LT(sameDifference, 0.1 * airDifference);
 }
 
+// The indices on both sides of a boundary are those of the channel: glass in glass of the same
+// dispersion is invisible, and so is the boundary between two slabs of it that touch.
+TEST(SlowTransmission, nestedBodiesUseTheIndicesOfEachChannel) {
+  constexpr float kIor = 1.5f, kDispersion = 20, kAttenuation = 0.5f;
+  constexpr double kSine = 0.8;
+  for (const auto& spans : std::vector<std::vector<std::pair<float, float>>>{
+           {{1, 0}}, {{1, 0}, {0.7f, 0.3f}}, {{1, 0.5f}, {0.5f, 0}}}) {
+    Scene scene;
+    for (const auto& [top, bottom] : spans) {
+      Material m = glass(0, false);
+      m.ior = kIor;
+      m.extended->dispersion = kDispersion;
+      m.extended->attenuation = Rgb(kAttenuation);
+      addSlab(scene, m, top, bottom);
+    }
+    const Rgb found = radianceAt(scene, kSine, 4096);
+    for (int c = 0; c < 3; ++c) {
+      const double index = kIor + (c - 1) * (kIor - 1) * 0.025 * kDispersion;
+      const double slant = std::sqrt(1 - kSine * kSine / (index * index));
+      EXPECT_NEAR(found[c],
+                  stackRadiance({{index, std::exp(-kAttenuation / slant)}, {1, 1}}, kSine), 4e-3)
+          << spans.size() << " slabs, channel " << c;
+    }
+  }
+}
+
 // Shadow rays pass through smooth thin sheets. Light samples and BSDF samples give the same
 // radiance of the floor below, at any maximum depth.
 TEST(Transmission, sheetsColourTheLightBeneath) {

@@ -72,6 +72,11 @@ class TexelFilter {
     for (size_t i = 0; i < points.size(); ++i)
       if (!baked.points[i].buried)
         index_[size_t(points[i].y) * size_t(size) + points[i].x] = int(i);
+    scaled_.resize(points.size());
+    const float scale = 1 / powerNear(meanLight());
+    for (size_t i = 0; i < points.size(); ++i)
+      for (size_t half = 0; half < 2; ++half)
+        scaled_[i][half] = scale * baked.points[i].halves[half];
     variances_.resize(points.size());
     forRanges(points.size(), 25, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) variances_[i] = varianceAround(i);
@@ -110,6 +115,19 @@ class TexelFilter {
     return i >= 0 && points_[size_t(i)].chart == p.chart ? i : -1;
   }
 
+  double meanLight() const {
+    double sum = 0;
+    for (const PointResult& point : baked_.points) sum += luminance(glm::dvec3(point.mean()));
+    return sum / double(std::max<size_t>(baked_.points.size(), 1));
+  }
+  // A power of two, which scales without rounding; 1 for 0.
+  static float powerNear(double number) {
+    constexpr double kMostOctaves = 120;  // of the range of a float
+    return number > 0 ? float(std::exp2(
+                            std::clamp(std::round(std::log2(number)), -kMostOctaves, kMostOctaves)))
+                      : 1;
+  }
+
   // The variance of a half: the mean of the squared differences of the halves, / 2.
   Rgb varianceAround(size_t i) const {
     Rgb sum(0);
@@ -117,7 +135,7 @@ class TexelFilter {
     for (int dy = -kNoiseReach; dy <= kNoiseReach; ++dy)
       for (int dx = -kNoiseReach; dx <= kNoiseReach; ++dx)
         if (const int other = at(points_[i], dx, dy); other >= 0) {
-          const auto& halves = baked_.points[size_t(other)].halves;
+          const auto& halves = scaled_[size_t(other)];
           const Rgb apart = halves[0] - halves[1];
           sum += 0.5f * apart * apart;
           ++count;
@@ -135,8 +153,8 @@ class TexelFilter {
       for (int px = -kPatch; px <= kPatch; ++px) {
         const int first = at(p, px, py), second = at(p, px + dx, py + dy);
         if (first < 0 || second < 0) continue;
-        const Rgb& a = baked_.points[size_t(first)].halves[half];
-        const Rgb& b = baked_.points[size_t(second)].halves[half];
+        const Rgb& a = scaled_[size_t(first)][half];
+        const Rgb& b = scaled_[size_t(second)][half];
         const Rgb noise = variances_[size_t(first)] + variances_[size_t(second)];
         const Rgb terms = ((a - b) * (a - b) - noise) / (noise + kLeast * (a * a + b * b) + 1e-30f);
         sum += terms.x + terms.y + terms.z;
@@ -148,8 +166,9 @@ class TexelFilter {
   const std::vector<BakePoint>& points_;
   const BakeResult& baked_;
   int size_;
-  std::vector<int> index_;      // by texel: its point's index, or -1
-  std::vector<Rgb> variances_;  // by point, of one half
+  std::vector<int> index_;                  // by texel: its point's index, or -1
+  std::vector<std::array<Rgb, 2>> scaled_;  // halves by point, near 1: their squares are floats
+  std::vector<Rgb> variances_;              // by point, of one half of these
 };
 
 }  // namespace

@@ -142,12 +142,12 @@ Image errorOf(const std::vector<DenoisedPart>& parts, const Image& differences,
   for (int y = 0; y < error.height; ++y)
     for (int x = 0; x < error.width; ++x) {
       const Rgb behind = plate.empty() ? Rgb(0) : plate.rgb(x, y);
-      const Rgb share = alpha.half.rgb(x, y) * behind;
+      const glm::dvec3 share(alpha.half.rgb(x, y) * behind);
       const Rgb gain = composite.gain.rgb(x, y);
       const Rgb largest = glm::max(gain * absolute(differences.rgb(x, y)), absolute(behind));
-      const Rgb change = glm::min(gain * glm::sqrt(parts[1].squaredError.rgb(x, y)), largest);
-      const Rgb standardError =
-          glm::sqrt(parts[0].squaredError.rgb(x, y) + share * share + change * change);
+      const glm::dvec3 change(glm::min(gain * parts[1].standardError.rgb(x, y), largest));
+      const glm::dvec3 objects(parts[0].standardError.rgb(x, y));
+      const Rgb standardError(glm::sqrt(objects * objects + share * share + change * change));
       const Rgb raised = composite.color.rgb(x, y) - unclamped.rgb(x, y);
       *error.at(x, y) = luminance(glm::max(standardError - glm::max(raised, 0.0f), 0.0f));
     }

@@ -24,7 +24,9 @@ float normalization(std::span<const HalvedImage> images) {
     count += double(mean.texels.size() + half.texels.size());
   }
   if (!(sum > 0)) return 1;
-  return float(std::exp2(-std::clamp(std::round(std::log2(sum / count)), -100.0, 100.0)));
+  constexpr double kMostOctaves = 120;  // of the range of a float
+  return float(
+      std::exp2(-std::clamp(std::round(std::log2(sum / count)), -kMostOctaves, kMostOctaves)));
 }
 
 Plane squares(const Plane& plane) {
@@ -197,7 +199,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
           const float error =
               std::min(known + squaredBias.at(x, y), std::max(known, noise[size_t(c)].at(x, y)));
           result.color.at(x, y)[c] = found.color[size_t(c)].at(x, y) / scale;
-          result.squaredError.at(x, y)[c] = error / scale / scale;
+          result.standardError.at(x, y)[c] = std::sqrt(error) / scale;
         }
       }
   }
@@ -209,14 +211,16 @@ Denoised sumOf(const std::vector<DenoisedPart>& parts) {
   Denoised sum{Image(width, height, 3), Image(width, height, 1)};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      Rgb color(0), squaredError(0);
+      Rgb color(0);
+      glm::dvec3 squaredError(0);  // beyond the range of a float for bright and dim images
       for (const DenoisedPart& part : parts) {
         color += part.color.rgb(x, y);
-        squaredError += part.squaredError.rgb(x, y);
+        const glm::dvec3 error(part.standardError.rgb(x, y));
+        squaredError += error * error;
       }
       // A regression may predict less than nothing.
       sum.color.setRgb(x, y, glm::max(color, Rgb(0)));
-      *sum.error.at(x, y) = luminance(glm::sqrt(squaredError));
+      *sum.error.at(x, y) = float(luminance(glm::sqrt(squaredError)));
     }
   return sum;
 }

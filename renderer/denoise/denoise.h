@@ -21,7 +21,7 @@ struct DenoiseInput {
 
 // Both images are RGB; the errors are estimates of noise and blur together.
 struct DenoisedPart {
-  Image color, squaredError;
+  Image color, standardError;
 };
 
 // Biased: details that noise hides are lost. Where the estimated error of the filter exceeds the

@@ -31,6 +31,22 @@ float footprintOf(float crossSection, float cosine, float doubleArea) {
   return doubleArea > 0 ? area / doubleArea : 0;
 }
 
+// v / |v| for a squared length that is 0, too small or too large for a float: triangles of more
+// than 1e9 m, and transforms by such factors. `none` if v is 0 or not finite.
+[[gnu::noinline]] vec3 unitOfExtreme(const vec3& v, const vec3& none) {
+  const glm::dvec3 unit = glm::normalize(glm::dvec3(v));
+  return glm::any(glm::isnan(unit)) ? none : vec3(unit);
+}
+
+// v / |v|, where `length2` is the square of |v|.
+inline vec3 unitOr(const vec3& v, float length2, const vec3& none) {
+  constexpr float kLeast = std::numeric_limits<float>::min(),
+                  kMost = std::numeric_limits<float>::max();
+  if (length2 >= kLeast && length2 <= kMost) [[likely]]
+    return v * (1 / std::sqrt(length2));
+  return unitOfExtreme(v, none);
+}
+
 float handednessOf(const std::optional<Transform>& toWorld) {
   return toWorld && glm::determinant(toWorld->linear) < 0 ? -1.0f : 1.0f;
 }
@@ -54,8 +70,7 @@ float handednessOf(const std::optional<Transform>& toWorld) {
   const auto unitAt = [&](const InstanceMotion::Key& key) {
     const vec3 n = interpolatedNormal(*key.mesh, key.toWorld, triangle, barycentric,
                                       handednessOf(key.toWorld));
-    const float length2 = glm::dot(n, n);
-    return length2 > 0 ? n * (1 / std::sqrt(length2)) : vec3(0);
+    return unitOr(n, glm::dot(n, n), vec3(0));
   };
   return glm::mix(unitAt(motion.keys[span.from]), unitAt(motion.keys[span.to]), span.fraction);
 }
@@ -86,9 +101,8 @@ std::optional<TangentFrame> tangentFrame(const Surface& s, const Instance& insta
   const vec4 tangent4 = interpolatedTangent(s, instance);
   vec3 tangent(tangent4);
   tangent -= normal * glm::dot(normal, tangent);
-  const float length2 = glm::dot(tangent, tangent);
-  if (!(length2 > 0)) return std::nullopt;
-  tangent *= 1 / std::sqrt(length2);
+  tangent = unitOr(tangent, glm::dot(tangent, tangent), vec3(0));
+  if (tangent == vec3(0)) return std::nullopt;
   return TangentFrame{
       tangent, handedness * (tangent4.w < 0 ? -1.0f : 1.0f) * glm::cross(normal, tangent), normal};
 }
@@ -150,7 +164,7 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
   s.position = (1 - barycentric.x - barycentric.y) * p0 + barycentric.x * p1 + barycentric.y * p2;
   vec3 front = handedness * glm::cross(p1 - p0, p2 - p0);
   const float doubleArea2 = glm::dot(front, front);
-  front = doubleArea2 > 0 ? front * (1 / std::sqrt(doubleArea2)) : wo;
+  front = unitOr(front, doubleArea2, wo);
   s.frontFace = glm::dot(front, wo) >= 0;
   s.footprint = 0;
   if (crossSection > 0)
@@ -163,9 +177,8 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
     vec3 n = interpolatedNormal(*s.mesh, instance.toWorld, s.triangle, barycentric, handedness);
     if (instance.motion) [[unlikely]]
       n = movingNormal(*instance.motion, s.triangle, barycentric, time);
-    const float length2 = glm::dot(n, n);
-    if (length2 > 0) {
-      n *= 1 / std::sqrt(length2);
+    n = unitOr(n, glm::dot(n, n), vec3(0));
+    if (n != vec3(0)) {
       if (s.material->normalTexture && !s.mesh->tangents.empty())
         n = mappedNormal(scene, s, instance, handedness, n);
       if (!s.frontFace) n = -n;
@@ -188,9 +201,9 @@ std::optional<TangentFrame> tangentFrameAt(const Surface& s, const Instance& ins
   const vec3 n = instance.motion ? movingNormal(*instance.motion, s.triangle, s.barycentric, s.time)
                                  : interpolatedNormal(*s.mesh, instance.toWorld, s.triangle,
                                                       s.barycentric, handedness);
-  const float length2 = glm::dot(n, n);
-  if (!(length2 > 0)) return std::nullopt;
-  return tangentFrame(s, instance, handedness, n * (1 / std::sqrt(length2)));
+  const vec3 unit = unitOr(n, glm::dot(n, n), vec3(0));
+  if (unit == vec3(0)) return std::nullopt;
+  return tangentFrame(s, instance, handedness, unit);
 }
 
 // Tangent-space normal mapping (glTF 2.0, 3.9.3).

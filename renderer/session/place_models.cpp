@@ -97,17 +97,21 @@ Camera chooseCamera(const RenderDescription& description, const Scene& scene,
 
 namespace {
 
+// Throws InputError if the scene reaches too far from the origin.
+void checkReach(const Bounds& box, const std::string& name) {
+  constexpr float kMaxReach = 1e9f;
+  const float reach = maxComponent(glm::max(glm::abs(box.min), glm::abs(box.max)));
+  if (!box.empty() && !(reach < kMaxReach))
+    throwInput("{}: reaches {:.3g} m from the origin; the limit is {:.0e}: scale it down", name,
+               reach, kMaxReach);
+}
+
 // The origin of the scene's coordinates in the world. Floats have a relative precision of 1e-7, so
 // a scene that is small compared with its distance from the origin is moved to its own centre. The
 // distant probe is not affected.
-glm::dvec3 originFor(const Scene& scene, const std::string& file) {
-  constexpr float kMaxReach = 1e9f, kFar = 1000;
-  const Bounds box = bounds(scene);
+glm::dvec3 originFor(const Bounds& box) {
+  constexpr double kFar = 1000;
   if (box.empty()) return glm::dvec3(0);
-  const vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
-  if (!(maxComponent(reach) < kMaxReach))
-    throwInput("{}: reaches {:.3g} m from the origin; the limit is {:.0e}: scale it down", file,
-               maxComponent(reach), kMaxReach);
   const glm::dvec3 centre = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
   return glm::length(centre) > kFar * glm::length(box.size()) ? centre : glm::dvec3(0);
 }
@@ -143,8 +147,10 @@ PlacedModels modelsAtOrigin(const RenderDescription& description,
                             const std::vector<ModelEntry>& models, ModelCache& cache) {
   PlacedModels placed;
   placed.scene = loadModels(description, models, placed.origin, cache, placed.warnings);
+  const Bounds box = bounds(placed.scene);
+  checkReach(box, description.scene ? description.sceneName() : models.front().file);
   if (description.scene) return placed;
-  placed.origin = originFor(placed.scene, models.front().file);
+  placed.origin = originFor(box);
   if (placed.origin != glm::dvec3(0))
     placed.scene = loadModels(description, models, placed.origin, cache, placed.warnings);
   return placed;

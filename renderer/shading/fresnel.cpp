@@ -46,7 +46,7 @@ Rgb thinFilmReflectance(const Rgb& baseF0, float filmIor, float thickness, float
     const float base = (1 + root) / (1 - root);
     const float r23 = fresnelSchlick(normalFilmReflectance(base, film), 1.0f, inside);
     const float shift = shift21 + (base < film ? kPi : 0);
-    const float r123 = glm::clamp(r12 * r23, 1e-5f, 0.9999f);
+    const float r123 = glm::clamp(r12 * r23, 0.0f, 0.9999f);
     const float rs = passed * passed * r23 / (1 - r123);
     float sum = r12 + rs, order = rs - passed;
     for (int m = 1; m <= 2; ++m) {

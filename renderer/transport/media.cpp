@@ -17,6 +17,14 @@ int onlyChannel(const Rgb& c) {
   return c.x != 0 ? 0 : c.y != 0 ? 1 : 2;
 }
 
+// The relative index of a ray from `from` to `to`; null: air.
+Rgb relativeIndex(const Material* from, const Material* to, const Rgb& throughput) {
+  const Rgb one(1);
+  const Rgb index = (to ? indexByChannel(*to) : one) / (from ? indexByChannel(*from) : one);
+  const int channel = onlyChannel(throughput);
+  return channel < 0 ? index : Rgb(index[channel]);
+}
+
 }  // namespace
 
 int Media::find(const Material* body) const {
@@ -27,19 +35,17 @@ int Media::find(const Material* body) const {
 
 RefractiveIndex Media::refractiveIndex(const Surface& s, const Rgb& throughput) const {
   const Material& m = *s.material;
-  Rgb own = indexByChannel(m);
-  if (const int c = onlyChannel(throughput); c >= 0) own = Rgb(own[c]);
   const bool isFull = count_ == int(bodies_.size());
   if (s.frontFace) {
     if (isFull) return {Rgb(1), m.ior};  // not tracked: no refraction
-    const float outer = count_ > 0 ? bodies_[size_t(count_ - 1)]->ior : 1;
-    return {own / outer, m.ior};
+    const Material* outer = count_ > 0 ? bodies_[size_t(count_ - 1)] : nullptr;
+    return {relativeIndex(outer, &m, throughput), m.ior};
   }
   const int location = find(&m);
   // Still inside a body that was entered later, or not tracked on entry: no refraction.
   if (location >= 0 ? location < count_ - 1 : isFull) return {Rgb(1), m.ior};
-  const float outer = location > 0 ? bodies_[size_t(location - 1)]->ior : 1;
-  return {outer / own, m.ior};
+  const Material* outer = location > 0 ? bodies_[size_t(location - 1)] : nullptr;
+  return {relativeIndex(&m, outer, throughput), m.ior};
 }
 
 Media& Media::follow(const Surface& s, const vec3& wi) {

@@ -83,7 +83,8 @@ std::optional<double> TiffBlock::find(uint64_t directory, uint16_t tag) const {
     const uint64_t rational = isBig_ ? at : number(at, 4);
     return positiveOrNone(double(number(rational, 4)) / double(number(rational + 4, 4)));
   }
-  return positiveOrNone(double(number(at, integerBytes(type))));
+  const std::vector<uint64_t> values = integers(directory, tag);
+  return values.empty() ? std::nullopt : positiveOrNone(double(values.front()));
 }
 
 std::vector<double> TiffBlock::rationals(uint64_t directory, uint16_t tag) const {
@@ -177,9 +178,14 @@ void checkDeflate(std::span<const uint8_t> file) {
   const TiffBlock tiff(file);
   const uint64_t image = tiff.firstDirectory();
   const auto number = [&](uint16_t tag) { return tiff.find(image, tag).value_or(1); };
-  constexpr uint16_t kWidth = 256, kHeight = 257, kBits = 258, kCompression = 259, kSamples = 277;
+  constexpr uint16_t kWidth = 256, kHeight = 257, kBits = 258, kCompression = 259, kFillOrder = 266,
+                     kSamples = 277;
   constexpr double kAdobeDeflate = 8, kDeflate = 32946;
   if (number(kCompression) != kAdobeDeflate && number(kCompression) != kDeflate) return;
+  if (number(kFillOrder) == 2)  // the module would decode it to black
+    throw std::runtime_error(
+        "the bits of its bytes are in reversed order (FillOrder 2) under Deflate, "
+        "which is not supported");
   // Tiles reach beyond the image, small ones less than a small image's.
   constexpr double kAlwaysAllowed = 64 << 20, kTilesOfImage = 4;
   double outBudget = kAlwaysAllowed + kTilesOfImage * number(kWidth) * number(kHeight) *
