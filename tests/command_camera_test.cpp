@@ -249,6 +249,7 @@ TEST_F(CommandCamera, CamerasInFilesAreChecked) {
   refuse(byFile + "distortion = 0.1", "it cannot have `distortion` too");
   refuse(byFile, "camera.toml: has no [camera] with `position` and `look_at`", "");
   refuse(byFile, "camera.toml:2: a camera's own file has `position`", "[camera]\nfile = \"a\"\n");
+  refuse(byFile, "and no `shutter`", "[camera]\nshutter = 24\n");
   refuse(byFile, "camera.toml:2: unknown key `fovv`", "[camera]\nfovv = 3\n");
   refuse(byFile, "camera.toml:1: unknown key `probe`", "probe = 3\n");
   refuse(byFile, "camera.toml:1: not valid TOML", "[camera");

@@ -299,6 +299,8 @@ TEST_F(CommandTransfer, RefusesBadModels) {
   refusesChanged([](Json& r, Json&) { r["extras"]["chromeball"]["basis"] = "haar:1073741824"; },
                  "extras.chromeball.basis: `haar:1073741824` is not");
   refusesChanged([](Json& r, Json&) { r["extras"]["chromeball"]["basis"] = 3; }, "has no transfer");
+  refusesChanged([](Json& r, Json&) { r["nodes"][0]["rotation"] = {0, 1, 0, 0}; }, "is turned");
+  refusesChanged([](Json& r, Json&) { r["nodes"][0]["scale"] = {-1, 1, 1}; }, "or mirrored");
   refusesChanged([](Json& r, Json& a) { r["accessors"][a["_PRT_1"].get<size_t>()]["count"] = 2; },
                  "_PRT_1 has 2 elements for 3 vertices");
   refusesChanged(

@@ -101,7 +101,7 @@ void readCameraFile(const std::string& path, SceneFile& scene) {
   const toml::table table = parseToml(path);
   const Section root(path, table, {"camera"});
   const Section camera = root.section("camera");
-  for (const char* key : {"file", "name"})
+  for (const char* key : {"file", "name", "shutter", "shutter_steps"})
     if (const Entry e = camera[key])
       failAt(e.location(), "a camera's own file has `position` and `look_at`, and no `{}`", key);
   scene.camera.reset();

@@ -131,6 +131,11 @@ TransferFile::TransferFile(const std::string& path, ExternalFiles external, cons
       scene_(sceneOf(path, external, warn, data_.origin)) {
   if (scene_.instances.empty()) throwInput("{}: the model has no triangles", path);
   for (size_t i = 0; i < scene_.instances.size(); ++i) {
+    if (data_.turned.contains(scene_.instances[i].node))
+      throwInput(
+          "{}: node \"{}\" is turned or mirrored, but its transfer is for light of fixed "
+          "directions; turn the model before `basis`, or the light (--rotation)",
+          path, nodeName(i));
     const size_t vertices = scene_.meshes[size_t(scene_.instances[i].mesh)].positions.size();
     const auto arrays = data_.attributes.find(scene_.instances[i].node);
     if (arrays == data_.attributes.end()) continue;

@@ -7,6 +7,7 @@
 #include "scene/gltf/compressed_mesh.h"
 #include "scene/gltf/gltf_file.h"
 #include "scene/gltf/gltf_json.h"
+#include "scene/gltf/node_tree.h"
 
 namespace chromeball {
 namespace {
@@ -45,6 +46,16 @@ void readExtras(GltfFile& file, CustomData& data) {
   }
 }
 
+// Whether the transform is a positive scale and a translation.
+bool keepsDirections(const glm::dmat4& m) {
+  constexpr double kTolerance = 1e-4;
+  const double scale = (m[0][0] + m[1][1] + m[2][2]) / 3;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      if (!(std::abs(m[c][r] - (c == r ? scale : 0)) <= kTolerance * scale)) return false;
+  return true;
+}
+
 }  // namespace
 
 CustomData readCustomData(const std::string& path, const std::string& prefix,
@@ -54,12 +65,14 @@ CustomData readCustomData(const std::string& path, const std::string& prefix,
   decodeDraco(file);
   CustomData data;
   readExtras(file, data);
+  const NodeTree tree = readNodes(file, {}, glm::dvec3(0));
   for (size_t i = 0; i < file.model.nodes.size(); ++i) {
     const int index = file.model.nodes[i].mesh;
     if (index == -1) continue;
     const tinygltf::Mesh& mesh =
         file.at(file.model.meshes, index, "meshes", fmt::format("nodes[{}].mesh", i));
     if (mesh.primitives.size() != 1) continue;
+    if (!keepsDirections(tree.toWorld[i])) data.turned.insert(int(i));
     for (const auto& [name, accessor] : mesh.primitives[0].attributes)
       if (name.starts_with(prefix))
         data.attributes[int(i)][name] = readFinite(

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct CustomData {
   // For each node, the attributes of its mesh's only primitive whose names start with the prefix,
   // each of finite vectors. Nodes whose mesh has several primitives have none.
   std::map<int, Arrays> attributes;
+  std::set<int> turned;  // the nodes of these that turn, mirror or stretch their mesh
   Arrays tables;                             // the accessors of extras.chromeball.tables
   std::map<std::string, std::string> texts;  // strings of extras.chromeball
   glm::dvec3 origin{0};                      // extras.chromeball.origin
