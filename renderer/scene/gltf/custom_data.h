@@ -18,7 +18,7 @@ struct CustomData {
   // each of finite vectors. Nodes whose mesh has several primitives have none.
   std::map<int, Arrays> attributes;
   std::set<int> turned;  // the nodes of these that turn, mirror or stretch their mesh
-  Arrays tables;                             // the accessors of extras.chromeball.tables
+  Arrays tables;         // the accessors of extras.chromeball.tables
   std::map<std::string, std::string> texts;  // strings of extras.chromeball
   glm::dvec3 origin{0};                      // extras.chromeball.origin
 };
