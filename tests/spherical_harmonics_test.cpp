@@ -29,6 +29,17 @@ TEST(SphericalHarmonics, BasisIsOrthonormal) {
     for (int j = 0; j < kShCount; ++j) EXPECT_NEAR(products[i][j], i == j, 5e-4) << i << " " << j;
 }
 
+// The basis is integrated over texels of any shape.
+TEST(SphericalHarmonics, AConstantHasOnlyBand0OnCoarseMaps) {
+  for (const ImageSize size :
+       {ImageSize{1, 1}, {2, 1}, {3, 5}, {8, 4}, {1, 64}, {512, 2}, {64, 1}}) {
+    const ShCoefficients sh = projectSh(constantProbe(size, Rgb(1)));
+    for (int i = 0; i < kShCount; ++i)
+      EXPECT_NEAR(sh[i].x, i == 0 ? std::sqrt(4 * kPiD) : 0, 1e-3)
+          << size.width << " x " << size.height << ", " << i;
+  }
+}
+
 TEST(SphericalHarmonics, GradientHasOnlyItsOwnTerms) {
   const dvec3 slope(0.3, 0.5, -0.2);
   const ShCoefficients sh = projectSh(gradientProbe({256, 128}, Rgb(1, 2, 3), slope));

@@ -145,13 +145,16 @@ std::array<double, kShCount> shBasis(const dvec3& d) {
 }
 
 ShCoefficients projectSh(const Image& latLong) {
+  // Parts of a texel that are small enough to use the basis at their centres.
+  constexpr int kWidth = 256, kHeight = 128;
+  const int across = (kWidth - 1) / latLong.width + 1, along = (kHeight - 1) / latLong.height + 1;
+  const int w = latLong.width * across, h = latLong.height * along;
   ShCoefficients coefficients{};
-  const int w = latLong.width, h = latLong.height;
   for (int y = 0; y < h; ++y) {
     const double solidAngle = texelSolidAngle(y, w, h);
     for (int x = 0; x < w; ++x) {
       const std::array<double, kShCount> basis = shBasis(texelDirection({w, h}, x, y));
-      const dvec3 flux = dvec3(latLong.rgb(x, y)) * solidAngle;
+      const dvec3 flux = dvec3(latLong.rgb(x / across, y / along)) * solidAngle;
       for (int i = 0; i < kShCount; ++i) coefficients[i] += basis[i] * flux;
     }
   }

@@ -182,7 +182,8 @@ using ShCoefficients = std::array<dvec3, kShCount>;
 std::array<double, kShCount> shBasis(const dvec3& direction);
 
 // L_lm = integral of radiance x Y_lm over the sphere, for a lat-long map that is constant over each
-// texel: Y_lm at the texel's centre times its exact solid angle.
+// texel: Y_lm at the centres of its parts, of at most 1.4 degrees, times their exact solid
+// angles.
 ShCoefficients projectSh(const Image& latLong);
 
 // The convolution with a function of the angle to `direction` (unit) that has these Legendre

@@ -37,6 +37,7 @@ namespace {
 
 constexpr double kContrast = 2000, kMinContrast = 10;  // times the mean luminance
 constexpr double kMinFraction = 0.01;                  // of the flux
+constexpr double kWidest = 90;                         // of a sun's diameter, degrees
 constexpr double kGlowContrast = 20;
 constexpr double kDegree = kPiD / 180;
 constexpr double kMaxCore = 3 * kDegree, kMaxGlow = 6 * kDegree;  // radii
@@ -230,7 +231,9 @@ SunExtraction extractSuns(const Image& latLong) {
     for (const Removed& r : removed)
       flux += luminance(Rgb(r.radiance)) * texelSolidAngle(r.texel.y, w, h);
     if (flux < kMinFraction * 4 * kPiD * mean) continue;
-    result.suns.push_back(discOf(removed, w, h));
+    const Sun sun = discOf(removed, w, h);
+    if (!(sun.angle <= kWidest)) continue;  // of texels that are too coarse for any disc
+    result.suns.push_back(sun);
     for (const Removed& r : removed) remainder.setRgb(r.texel.x, r.texel.y, r.kept);
   }
   std::sort(result.suns.begin(), result.suns.end(), [](const Sun& a, const Sun& b) {

@@ -14,7 +14,7 @@ namespace chromeball {
 struct Sun {
   glm::dvec3 direction;   // unit, towards its centre
   glm::dvec3 irradiance;  // on a surface that faces it
-  double angle;           // angular diameter, degrees; above 0
+  double angle;           // angular diameter, degrees; above 0, at most 90
 
   glm::dvec3 radiance() const;  // irradiance / (pi sin^2(angle / 2))
 
@@ -36,7 +36,8 @@ struct SunExtraction {
 // The disc has exactly the irradiance of the removed light, and its mean distance from the centre,
 // so that surfaces which see half of the disc keep their irradiance too. Together, suns and
 // remainder have the irradiance of the map for every normal, to 0.1% of its mean, at 1024 x 512
-// texels (constant over each texel) and more.
+// texels (constant over each texel) and more; to 1 to 4% at 16 x 8. A map whose texels are too
+// coarse for a disc of 90 degrees has no suns.
 //
 // `latLong` is finite and not negative, and has at least three channels.
 SunExtraction extractSuns(const Image& latLong);
