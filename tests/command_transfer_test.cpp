@@ -264,7 +264,6 @@ TEST_F(CommandTransfer, RefusesBadOptions) {
   refusesBasis({"--directions", "sh:2"}, "--directions: has no effect with --at vertices");
   refusesBasis({"--half"}, "--half: has no effect with --at vertices");
   refusesBasis({"--size", "9x9"}, "--size: has no effect with --at vertices");
-  refusesBasis({"--camera", "Left"}, "--camera: has no effect with --at vertices");
   refusesBasis({"--max-depth", "0"}, "--max-depth");
   refuses({"basis", folder_ / "m.gltf", "--at", "texels"}, "--at: `texels` is not pixels");
   refuses({"basis", folder_ / "m.gltf", "--basis", "sh:2"}, "--basis: needs --at vertices");

@@ -12,11 +12,11 @@ namespace {
 using Names = std::span<const std::string_view>;
 
 // Keys that a command heeds although it does not have their options.
-constexpr std::string_view kKeysOfBake[] = {
-    "render.size",  "camera.name",         "camera.file",         "lighting.lights",
-    "lighting.mis", "render.single_sided", "render.glass_shadows"};
+constexpr std::string_view kKeysOfBake[] = {"render.size",         "camera.file",
+                                            "lighting.lights",     "lighting.mis",
+                                            "render.single_sided", "render.glass_shadows"};
 constexpr std::string_view kKeysOfBasis[] = {"lighting.lights", "lighting.from"};
-constexpr std::string_view kKeysOfBasisVertices[] = {"render.size", "camera.name", "camera.file",
+constexpr std::string_view kKeysOfBasisVertices[] = {"render.size", "camera.file",
                                                      "lighting.lights", "lighting.from"};
 // Keys that the command takes out itself where it heeds them.
 constexpr std::string_view kTakenByBake[] = {"render.ao_distance"};

@@ -53,11 +53,10 @@ std::string titleOf(const Setting& setting) {
 
 // Options that decide the light on surfaces, and none that need an image.
 constexpr std::string_view kOfBake[] = {
-    "probe",     "probe-mapping", "probe-rotation", "probe-scale",    "samples",
-    "seed",      "max-depth",     "ao-distance",    "strategy",       "light-from",
-    "sun-angle", "light-units",   "animation",      "animation-time", "variant",
-    "memory",    "threads",       "texture-memory", "allow-external", "progress",
-    "quiet"};
+    "probe",          "probe-mapping",  "probe-rotation", "probe-scale", "samples",   "seed",
+    "max-depth",      "ao-distance",    "strategy",       "light-from",  "sun-angle", "light-units",
+    "animation",      "animation-time", "variant",        "camera",      "memory",    "threads",
+    "texture-memory", "allow-external", "progress",       "quiet"};
 
 // Options that decide the picture, and none about its light, which comes from everywhere.
 constexpr std::string_view kOfBasis[] = {"size",
@@ -85,14 +84,9 @@ constexpr std::string_view kOfBasis[] = {"size",
                                          "quiet"};
 
 // The options among these that vertices do not need.
-constexpr std::string_view kOfPixels[] = {"size",
-                                          "max-diffuse-depth",
-                                          "max-specular-depth",
-                                          "max-transmission-depth",
-                                          "mis",
-                                          "transparent",
-                                          "camera",
-                                          "camera-file"};
+constexpr std::string_view kOfPixels[] = {
+    "size", "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
+    "mis",  "transparent",       "camera-file"};
 
 bool isList(const Setting& setting) {
   return setting.type == SettingType::Choices || setting.type == SettingType::Files;
