@@ -81,7 +81,6 @@ TEST(Session, GivesTheBitsOfARenderInTheForeground) {
   EXPECT_NEAR(snapshot->samples, 16, 1);  // an adaptive render
 }
 
-// Each snapshot has more samples than the one before, and none is invalid; the render's bits stay.
 TEST(Session, RefusesArraysThatReachTooFar) {
   Stage stage;
   Scene far;
@@ -98,6 +97,7 @@ TEST(Session, RefusesArraysThatReachTooFar) {
   }
 }
 
+// Each snapshot has more samples than the one before, and none is invalid; the render's bits stay.
 TEST(Session, SnapshotsGrow) {
   const RenderDescription description = stageDescription(Stage(), 1024);
   Session session(description);

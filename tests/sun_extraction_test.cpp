@@ -234,7 +234,6 @@ TEST(SunExtraction, FindsNoneWithoutSuns) {
   EXPECT_TRUE(extractSuns(clearSkyProbe({256, 128}, {.sunElevation = 20}, false)).suns.empty());
 }
 
-// In maps of any shape, one bright texel becomes a disc of finite radiance with its energy.
 // Of texels as wide as the sky no disc has the light.
 TEST(SunExtraction, ElongatedMapsKeepTheirLight) {
   for (const ImageSize size : {ImageSize{1, 64}, {1, 4096}, {4096, 1}, {64, 1}, {3, 5}}) {
@@ -252,6 +251,7 @@ TEST(SunExtraction, ElongatedMapsKeepTheirLight) {
   }
 }
 
+// In maps of any shape, one bright texel becomes a disc of finite radiance with its energy.
 TEST(SunExtraction, OneTexelOfAnyMap) {
   for (const ImageSize size : {ImageSize{2, 1}, {3, 16}, {64, 2}, {64, 32}, {300, 20}, {512, 256}})
     for (const int y : {0, size.height / 2, size.height - 1}) {
