@@ -266,6 +266,24 @@ TEST_F(CommandCamera, CamerasInFilesAreChecked) {
               "--camera-file: excludes --camera");
 }
 
+TEST_F(CommandCamera, OfAFileReplacesTheOpticsOfTheScenesCameraWithAWord) {
+  writeImage(path("probe.hdr"), overcastProbe({16, 8}, Rgb(1), 0.3));
+  const std::string camera =
+      write("camera.toml", "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\n");
+  const auto errorOf = [&](const std::string& optics) {
+    const std::string scene = write("scene.toml", "model = \"model.gltf\"\n" + optics);
+    const CommandResult r =
+        runCommand({"render", scene, "--probe", path("probe.hdr"), "-o", path("x.exr"),
+                    "--camera-file", camera, "--size", "16x16", "--samples", "1"});
+    EXPECT_EQ(r.status, 0) << r.error;
+    return r.error;
+  };
+  EXPECT_EQ(errorOf("").find("distortion"), std::string::npos);
+  EXPECT_NE(errorOf("[camera]\ndistortion = 0.1\n")
+                .find("scene.toml:3: `principal_point` and `distortion` go with the scene's own"),
+            std::string::npos);
+}
+
 TEST_F(CommandCamera, ExifTellsTheFocalLengthWhereItIsNeeded) {
   const std::string jpeg = fileContents(std::string(kSourceDir) + "/tests/fuzz/seeds/image/a.jpg");
   std::ofstream(path("photo.jpg"), std::ios::binary)

@@ -44,7 +44,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
      {"base", "math", "image", "probe", "scene", "shading", "lighting/constellation",
       "lighting/fit"}},
     {"film", {"base", "math", "image"}},
-    {"denoise", {"base", "image", "film"}},
+    {"denoise", {"base", "math", "image", "film"}},
     {"guiding", {"base", "math"}},
     {"transport", {"base", "math", "scene", "trace", "shading", "lighting", "film", "guiding"}},
     {"approximate",

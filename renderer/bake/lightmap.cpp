@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "base/parallel.h"
+#include "math/vec.h"
 
 namespace chromeball {
 
@@ -73,7 +74,7 @@ class TexelFilter {
       if (!baked.points[i].buried)
         index_[size_t(points[i].y) * size_t(size) + points[i].x] = int(i);
     scaled_.resize(points.size());
-    const float scale = 1 / powerNear(meanLight());
+    const float scale = 1 / powerOfTwoNear(meanLight());
     for (size_t i = 0; i < points.size(); ++i)
       for (size_t half = 0; half < 2; ++half)
         scaled_[i][half] = scale * baked.points[i].halves[half];
@@ -119,13 +120,6 @@ class TexelFilter {
     double sum = 0;
     for (const PointResult& point : baked_.points) sum += luminance(glm::dvec3(point.mean()));
     return sum / double(std::max<size_t>(baked_.points.size(), 1));
-  }
-  // A power of two, which scales without rounding; 1 for 0.
-  static float powerNear(double number) {
-    constexpr double kMostOctaves = 120;  // of the range of a float
-    return number > 0 ? float(std::exp2(
-                            std::clamp(std::round(std::log2(number)), -kMostOctaves, kMostOctaves)))
-                      : 1;
   }
 
   // The variance of a half: the mean of the squared differences of the halves, / 2.

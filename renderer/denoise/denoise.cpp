@@ -7,6 +7,7 @@
 
 #include "denoise/filter.h"
 #include "denoise/selection.h"
+#include "math/vec.h"
 
 namespace chromeball {
 namespace {
@@ -23,10 +24,7 @@ float normalization(std::span<const HalvedImage> images) {
     for (const float texel : half.texels) sum += std::fabs(double(texel));
     count += double(mean.texels.size() + half.texels.size());
   }
-  if (!(sum > 0)) return 1;
-  constexpr double kMostOctaves = 120;  // of the range of a float
-  return float(
-      std::exp2(-std::clamp(std::round(std::log2(sum / count)), -kMostOctaves, kMostOctaves)));
+  return 1 / powerOfTwoNear(sum / count);
 }
 
 Plane squares(const Plane& plane) {

@@ -79,7 +79,8 @@ void addCamera(std::vector<Setting>& rows) {
        .argument = "FILE.toml",
        .type = File,
        .absent = "none",
-       .help = "A file with a [camera] of its own, as `chromeball camera solve` writes it."});
+       .help = "A file with a [camera] of its own, principal point and distortion included, as "
+               "`chromeball camera solve` writes it."});
   add({.key = "position",
        .type = Compound,
        .form = "three numbers",

@@ -115,6 +115,15 @@ inline glm::dvec3 unitOrZero(const glm::dvec3& v) {
   return longest > 0 ? glm::normalize(v / longest) : glm::dvec3(0);
 }
 
+// The power of two nearest to a positive number, by ratio, between 2^-120 and 2^120: floats scaled
+// by it or by its inverse are not rounded. 1 for numbers that are not positive.
+inline float powerOfTwoNear(double number) {
+  constexpr double kMostOctaves = 120;
+  if (!(number > 0)) return 1;
+  const double octaves = std::round(std::log2(number));
+  return float(std::exp2(std::clamp(octaves, -kMostOctaves, kMostOctaves)));
+}
+
 // Trigonometry by polynomials, for angles in turns (1 = 360 degrees). The C library's functions
 // took more than a tenth of a render's time. The error of atan2 is below 5e-8 turns (a texel of a
 // 16k probe is 6e-5). NaN propagates.

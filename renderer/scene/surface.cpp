@@ -34,8 +34,8 @@ float footprintOf(float crossSection, float cosine, float doubleArea) {
 // v / |v| for a squared length that is 0, too small or too large for a float: triangles of more
 // than 1e9 m, and transforms by such factors. `none` if v is 0 or not finite.
 [[gnu::noinline]] vec3 unitOfExtreme(const vec3& v, const vec3& none) {
-  const glm::dvec3 unit = glm::normalize(glm::dvec3(v));
-  return glm::any(glm::isnan(unit)) ? none : vec3(unit);
+  const vec3 unit(unitOrZero(glm::dvec3(v)));
+  return glm::dot(unit, unit) > 0 ? unit : none;
 }
 
 // v / |v|, where `length2` is the square of |v|.

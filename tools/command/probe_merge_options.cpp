@@ -107,7 +107,8 @@ void MergeArguments::addTo(Command command) {
   command.addFlag("--unaligned", unaligned, "accept photographs that seem shifted");
   command
       .addOption("--calibrate-filter", calibration,
-                 "WITH WITHOUT: instead, print the transmission of a filter from two merged images")
+                 "WITH WITHOUT: instead, print the transmission of a filter from two merged images "
+                 "(.exr, which keeps the photographs' primaries)")
       .words(2);
   command.addFlag("--json", json, "print JSON");
 }
