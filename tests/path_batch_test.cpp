@@ -129,6 +129,36 @@ TEST(PathBatch, AlsoWithGuidedBounces) {
   }
 }
 
+template <class Traced>
+RenderResult renderedBy(const NamedScene& named, int depth) {
+  const World world(named.scene, {}, allTables());
+  const Probe probe(named.probe);
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+  const RenderSettings settings = smallRender(40, 30, 37, depth);
+  const std::atomic<bool> stop = false;
+  return render(
+      Traced(PathTracer(world, *lighting, settings.path())), world, cameraAbove(), settings,
+      [](double) {}, stop);
+}
+
+// Without a bounce left, rays are only asked whether they escape, unless a surface might show then:
+// the material that is added, though nothing has it.
+TEST(PathBatch, LastRaysFindWhatClosestHitsFind) {
+  for (const NamedScene& named : threeScenes())
+    for (const int depth : {1, 3}) {
+      SCOPED_TRACE(std::string(named.name) + ", depth " + std::to_string(depth));
+      const RenderResult together = renderedBy<PathIntegrator>(named, depth),
+                         single = renderedBy<OneAtATime>(named, depth);
+      NamedScene full = named;
+      full.scene.materials.emplace_back().emission = Rgb(1);
+      const RenderResult fullTogether = renderedBy<PathIntegrator>(full, depth);
+      EXPECT_EQ(together.film.mean().texels, fullTogether.film.mean().texels);
+      EXPECT_EQ(together.depthCut.fraction(DepthLimit::Depth),
+                fullTogether.depthCut.fraction(DepthLimit::Depth));
+      EXPECT_EQ(single.film.mean().texels, renderedBy<OneAtATime>(full, depth).film.mean().texels);
+    }
+}
+
 // A black probe has no light samples.
 TEST(PathBatch, UnderABlackProbe) {
   std::vector<NamedScene> scenes = threeScenes();

@@ -41,6 +41,9 @@ class Accel {
     return masks_.empty() ? kAllInstances : masks_[instance];
   }
 
+  // Whether rays may pass some surface: one that is masked or blended, or that lets shadow rays
+  // through.
+  bool hasFilter() const { return hasFilter_; }
   // Whether shadow rays depend on the bodies that contain their origin: they pass some
   // (Material::straightShadows), or some are masked or blended.
   bool needsMedia() const { return needsMedia_; }

@@ -46,13 +46,17 @@ std::optional<DepthLimit> PathTracer::reachedLimit(const PathState& state, const
   return {};
 }
 
+bool PathTracer::isFollowed(DepthLimit limit, const PathContext& context) {
+  constexpr uint64_t kPurpose = 0x637574;  // separate random stream
+  return hash(context.sampler.sampleKey(), kPurpose) % intervalOf(limit) == 0;
+}
+
 // Continues one in intervalOf() of the paths that reach a limit twice with the same random numbers:
 // with the given limits, and with kExtraBounces more bounces. The difference is the light cut off.
 [[gnu::noinline]] void PathTracer::followTwice(PathState& state, const Hit& hit, DepthLimit limit,
                                                PathContext& context) const {
-  constexpr uint64_t kPurpose = 0x637574;  // separate random stream
   state.cutIsEstimated = true;
-  if (hash(context.sampler.sampleKey(), kPurpose) % intervalOf(limit) != 0) return;
+  if (!isFollowed(limit, context)) return;
   PathSettings limited = settings_;
   limited.estimateDepthCut = false;
   PathSettings farther = limited;

@@ -153,22 +153,48 @@ void PathBatch::traceShadowRays(Task& task) {
 
 void PathBatch::traceNextRays(Task& task) {
   Indices& traced = shaded_;  // not in use any more
+  Indices last;
+  size_t remaining = 0;
   traced.size = rays_.size = keys_.size = 0;
   for (const uint32_t i : active_.all()) {
     select(i, task);
-    paths_[i].guided.startRest(paths_[i].radiance);
-    if (paths_[i].place) [[unlikely]] {
-      hits_[i] = task.tracer.nextHit(paths_[i], task.context);
+    PathState& path = paths_[i];
+    path.guided.startRest(path.radiance);
+    if (task.tracer.endsAtAnyHit(path, task.context)) {
+      last.add(i);
+      continue;
+    }
+    active_.items[remaining++] = i;
+    if (path.place) [[unlikely]] {
+      hits_[i] = task.tracer.nextHit(path, task.context);
       continue;
     }
     traced.add(i);
-    rays_.add(paths_[i].ray);
+    rays_.add(path.ray);
     keys_.add(task.context.sampler.sampleKey());
-    if (task.context.log) task.context.log->rays.push_back({paths_[i].ray, false});
+    if (task.context.log) task.context.log->rays.push_back({path.ray, false});
   }
+  active_.size = remaining;
   task.accel().intersect(rays_.all(), keys_.all(), Accel::Coherence::None,
                          std::span(found_).first(rays_.size), task.visible());
   for (size_t k = 0; k < traced.size; ++k) hits_[traced.items[k]] = found_[k];
+  traceLastRays(last, task);
+}
+
+// The paths whose rays escape go on, to find the light there.
+void PathBatch::traceLastRays(const Indices& paths, Task& task) {
+  rays_.size = 0;
+  for (const uint32_t i : paths.all()) {
+    rays_.add(paths_[i].ray);
+    if (task.context.log) task.context.log->rays.push_back({paths_[i].ray, true});
+  }
+  task.accel().transmittance(rays_.all(), std::span(transmittances_).first(rays_.size),
+                             task.visible());
+  for (size_t k = 0; k < paths.size; ++k)
+    if (!isBlack(transmittances_[k])) {
+      hits_[paths.items[k]].reset();
+      active_.add(paths.items[k]);
+    }
 }
 
 }  // namespace chromeball

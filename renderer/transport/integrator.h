@@ -109,6 +109,7 @@ class PathBatch {
 
     void add(const T& item) { items[size++] = item; }
     std::span<T> all() { return std::span(items).first(size); }
+    std::span<const T> all() const { return std::span(items).first(size); }
   };
   using Indices = List<uint32_t>;  // of paths
 
@@ -120,6 +121,7 @@ class PathBatch {
   void completeGuided(Task& task);
   void traceShadowRays(Task& task);
   void traceNextRays(Task& task);
+  void traceLastRays(const Indices& paths, Task& task);
 
   size_t count_ = 0;
   std::array<PathState, kMaxPaths> paths_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "transport/path.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -27,6 +28,14 @@ bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
          (bounce.isDelta || !surface.frontFace || glm::dot(surface.geometricNormal, bounce.wi) < 0);
 }
 
+// Whether paths without bounces left end, without light, at each surface of the scene.
+bool surfacesEndPaths(const World& world) {
+  return !world.accel.hasFilter() &&
+         std::ranges::none_of(world.scene.materials, [](const Material& m) {
+           return m.emits() || m.extended || m.backLetsLightThrough();
+         });
+}
+
 void countKind(PathState& state, bool isTransmission, bool isDiffuse) {
   if (isTransmission) return;
   ++(isDiffuse ? state.diffuse : state.specular);
@@ -41,6 +50,7 @@ PathTracer::PathTracer(const World& world, const LightSource& lighting,
       settings_(settings),
       mirrorAlpha_(lighting.mirrorAlpha()),
       limitsKinds_(settings.limitsKinds()),
+      surfacesEndPaths_(surfacesEndPaths(world)),
       seen_(world, lighting),
       direct_(world, lighting, settings) {}
 
@@ -50,6 +60,7 @@ PathTracer::PathTracer(const PathTracer& other, const PathSettings& settings)
       settings_(settings),
       mirrorAlpha_(other.mirrorAlpha_),
       limitsKinds_(settings.limitsKinds()),
+      surfacesEndPaths_(other.surfacesEndPaths_),
       seen_(other.seen_),
       direct_(world_, lighting_, settings) {}
 
@@ -61,11 +72,23 @@ std::optional<Hit> PathTracer::closestHit(const Ray& ray, PathContext& context) 
   return hit;
 }
 
+bool PathTracer::escapes(const Ray& ray, PathContext& context) const {
+  if (context.log) context.log->rays.push_back({ray, true});
+  return !isBlack(world_.accel.transmittance(ray, settings_.visible));
+}
+
 std::optional<Hit> PathTracer::nextHit(const PathState& state, PathContext& context) const {
   if (!state.place) return closestHit(state.ray, context);
   Hit hit = state.place.current();
   hit.distance = 0;
   return hit;
+}
+
+bool PathTracer::endsAtAnyHit(const PathState& state, const PathContext& context) const {
+  return surfacesEndPaths_ && state.bounces() == settings_.maxDepth && !state.isDelta &&
+         !state.place && !state.first &&
+         (!settings_.estimateDepthCut || state.cutIsEstimated ||
+          !isFollowed(DepthLimit::Depth, context));
 }
 
 Surface PathTracer::surfaceOf(const PathState& state, const Hit& hit) const {
@@ -282,7 +305,12 @@ Rgb PathTracer::follow(PathState state, std::optional<Hit> hit, PathContext& con
     if (!vertex(state, hit, context)) break;
     context.sampler.startVertex(state.depth);
     state.guided.startRest(state.radiance);
-    hit = nextHit(state, context);
+    if (endsAtAnyHit(state, context)) {
+      if (!escapes(state.ray, context)) break;
+      hit.reset();
+    } else {
+      hit = nextHit(state, context);
+    }
   }
   context.addRecord(state.guided, state.radiance);
   return state.radiance;

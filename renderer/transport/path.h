@@ -95,6 +95,12 @@ class PathTracer {
   // The hit of the next surface that the path meets.
   std::optional<Hit> nextHit(const PathState& state, PathContext& context) const;
 
+  // Whether it only matters of the state's ray whether it escapes: no bounce is left, and no
+  // surface of the scene shows then or lets the path pass. A shadow ray, which costs less, finds
+  // that.
+  bool endsAtAnyHit(const PathState& state, const PathContext& context) const;
+  bool escapes(const Ray& ray, PathContext& context) const;
+
   // The surface that the path meets where it has hit one: another one if that coincides with it and
   // comes first. nullopt if the path ignores the surface and no other one coincides with it.
   std::optional<Hit> metAt(PathState& state, const Hit& hit, PathContext& context) const;
@@ -145,13 +151,15 @@ class PathTracer {
   static void noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                          const PathContext& context);
   std::optional<DepthLimit> reachedLimit(const PathState& state, const Hit& hit) const;
+  // Whether this is one of the paths that estimateDepthCut() follows beyond the limit.
+  static bool isFollowed(DepthLimit limit, const PathContext& context);
   void followTwice(PathState& state, const Hit& hit, DepthLimit limit, PathContext& context) const;
 
   const World& world_;
   const LightSource& lighting_;
   PathSettings settings_;
   float mirrorAlpha_;
-  bool limitsKinds_;
+  bool limitsKinds_, surfacesEndPaths_;
   SeenFeature seen_;
   DirectLight direct_;
 };
