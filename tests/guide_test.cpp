@@ -169,7 +169,7 @@ TEST(SlowGuide, AgreesWithTheUnguidedRenderInEveryPixel) {
 
 // Light from the walls of a box around the room, whose directions differ from point to point.
 TEST(SlowGuide, AgreesInSurroundings) {
-  constexpr int kSeeds = 16, kSize = 32, kTiles = 16;
+  constexpr int kSeeds = 16, kSize = 40, kTiles = 16, kTile = kSize / 4;
   const Scene scene = room();
   const World world(scene, {}, allTables());
   const Probe probe = sunBehind();
@@ -194,7 +194,8 @@ TEST(SlowGuide, AgreesInSurroundings) {
     const Image mean = r.film.mean();
     for (int t = 0; t < kTiles; ++t) {
       double sum = 0;
-      for (int i = 0; i < 64; ++i) sum += luminance(mean.rgb(t % 4 * 8 + i % 8, t / 4 * 8 + i / 8));
+      for (int i = 0; i < kTile * kTile; ++i)
+        sum += luminance(mean.rgb(t % 4 * kTile + i % kTile, t / 4 * kTile + i / kTile));
       tiles[on][size_t(t)].push_back(sum);
     }
   }
@@ -245,7 +246,7 @@ TEST(SlowGuide, NoiseIsThatOfGuidedRenders) {
 // Tile means and squared noise of renders with and without a guide, of independent seeds.
 class GuidedAndNot {
  public:
-  static constexpr int kSize = 32, kTiles = 16, kSeeds = 12;
+  static constexpr int kSize = 40, kTiles = 16, kTile = kSize / 4, kSeeds = 12;
 
   // render(settings): the image, the squared noise, and whether light samples were guided.
   struct Picture {
@@ -264,8 +265,8 @@ class GuidedAndNot {
       squared_[on] += picture.squaredNoise;
       for (int t = 0; t < kTiles; ++t) {
         double sum = 0;
-        for (int i = 0; i < 64; ++i)
-          sum += luminance(picture.mean.rgb(t % 4 * 8 + i % 8, t / 4 * 8 + i / 8));
+        for (int i = 0; i < kTile * kTile; ++i)
+          sum += luminance(picture.mean.rgb(t % 4 * kTile + i % kTile, t / 4 * kTile + i / kTile));
         tiles_[on][size_t(t)].push_back(sum);
       }
     }
@@ -392,7 +393,7 @@ TEST(Guide, TheNumberOfThreadsChangesNothing) {
   for (const size_t threads : {1, 2, 5}) {
     const ThreadLimit limit(threads);
     const RenderResult r = renderScene(scene, inside(), sunBehind(), "importance",
-                                       guidedRender(50, 40, 32, Guiding::Auto));
+                                       guidedRender(70, 56, 32, Guiding::Auto));
     EXPECT_GT(r.guidedRegions, 0u);
     images.push_back(r.film.mean());
   }
