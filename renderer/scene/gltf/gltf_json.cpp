@@ -18,31 +18,11 @@ namespace {
 
 using nlohmann::json;
 
-const std::set<std::string> kSupportedExtensions = {
-    "EXT_lights_image_based",
-    "EXT_mesh_gpu_instancing",
-    "EXT_meshopt_compression",
-    "EXT_texture_webp",
-    "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_iridescence",
-    "KHR_materials_sheen",
-    "KHR_materials_variants",
-    "KHR_materials_dispersion",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_meshopt_compression",
-    "KHR_node_visibility",
-    "KHR_texture_transform",
-};
+bool isSupported(std::string_view extension) {
+  return extension == "KHR_mesh_quantization" || extension == "KHR_meshopt_compression" ||
+         ((extension.starts_with("EXT_") || extension.starts_with("KHR_")) &&
+          findObjectType(extension));
+}
 
 // How the user can avoid an unsupported extension.
 const char* adviceFor(const std::string& extension) {
@@ -77,11 +57,11 @@ void checkVersion(const json& root) {
 
 std::set<std::string> checkExtensions(const json& root) {
   for (const std::string& name : namesIn(root, "extensionsRequired"))
-    if (!kSupportedExtensions.contains(name))
+    if (!isSupported(name))
       throw std::runtime_error(fmt::format("requires the extension {}, which is not supported; {}",
                                            printableName(name), adviceFor(name)));
   std::set<std::string> ignored = namesIn(root, "extensionsUsed");
-  for (const std::string& name : kSupportedExtensions) ignored.erase(name);
+  std::erase_if(ignored, isSupported);
   return ignored;
 }
 
@@ -254,8 +234,8 @@ void checkObject(json& value, const ObjectType& object, const JsonPlace& place) 
   for (const auto& [name, element] : value.items())
     if (name == "extensions")
       checkExtensionTypes(element, {&place, name});
-    else if (const MemberType* member = findMemberType(object, name))
-      checkType(element, member->type, {&place, name});
+    else if (const std::string_view type = memberTypeOf(object, name); !type.empty())
+      checkType(element, type, {&place, name});
 }
 
 }  // namespace
