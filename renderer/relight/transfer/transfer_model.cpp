@@ -75,31 +75,18 @@ EscapingPath pathFromWhite(const PathTracer& tracer, const Surface& surface, Pat
 VertexTransfer estimateTransfer(const World& world, const std::vector<PlacedMesh>& meshes,
                                 const std::vector<BakePoint>& points, const LightBasis& basis,
                                 const TransferSettings& settings, const Progress& progress) {
-  const NoProbe dark;
-  const PathTracer tracer(world, dark, {.maxDepth = settings.maxDepth, .estimateDepthCut = false});
   VertexTransfer result;
   result.count = basis.size();
   result.values.assign(points.size() * result.count, Rgb(0));
   std::vector<Rgb> own(points.size(), Rgb(0));
-  const TransferPoints all(tracer, meshes, points, settings);
-  all.forPoints(result, progress, [&](size_t i, const Surface& surface, TransferWorker& worker) {
-    worker.sums.assign(result.count, dvec3(0));
-    dvec3 found(0);
-    const uint32_t valid = all.forSamples(
-        i, worker, [&] { return pathFromWhite(tracer, surface, worker.context); },
-        [&](const EscapingPath& path) {
-          if (path.escapes) basis.add(path.direction, dvec3(path.throughput), worker.sums);
-          found += dvec3(path.found);
-        });
-    if (valid == 0) return;
-    const std::span<Rgb> values = std::span(result.values).subspan(i * result.count, result.count);
-    for (size_t k = 0; k < result.count; ++k) values[k] = Rgb(worker.sums[k] / double(valid));
-    basis.transform(values);
-    own[i] = Rgb(found / double(valid));
+  const TransferPoints all(world, meshes, points, basis, settings);
+  all.forPoints(result, progress, [&](size_t i, const Surface& surface, PointWorker& worker) {
+    all.setMean(
+        i, worker, [&] { return pathFromWhite(all.tracer(), surface, worker.context); },
+        std::span(result.values).subspan(i * result.count, result.count), own[i]);
   });
   if (std::ranges::any_of(own, [](const Rgb& light) { return light != Rgb(0); }))
     result.own = std::move(own);
-  world.scene.checkTexels();
   return result;
 }
 
