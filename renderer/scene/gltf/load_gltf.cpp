@@ -12,10 +12,10 @@
 #include "scene/gltf/animation.h"
 #include "scene/gltf/compressed_mesh.h"
 #include "scene/gltf/gltf_file.h"
+#include "scene/gltf/gltf_json.h"
 #include "scene/gltf/lights.h"
 #include "scene/gltf/model_cache.h"
 #include "scene/gltf/node_tree.h"
-#include "scene/gltf/variants.h"
 #include "scene/motion.h"
 
 namespace chromeball {
@@ -80,6 +80,88 @@ void scaleMedia(const Transform& placement, Scene& scene) {
 void addMissingNodes(tinygltf::Model& model) {
   if (!model.nodes.empty() || !model.scenes.empty()) return;
   for (size_t i = 0; i < model.meshes.size(); ++i) model.nodes.emplace_back().mesh = int(i);
+}
+
+// KHR_materials_variants: alternative sets of materials for a model.
+
+using tinygltf::Value;
+
+constexpr const char* kVariants = "KHR_materials_variants";
+
+std::vector<std::string> variantNames(const GltfFile& file) {
+  std::vector<std::string> names;
+  const Value* extension = findExtension(file.model.extensions, kVariants);
+  if (!extension) return names;
+  const Value& list = memberOf(*extension, "variants");
+  for (size_t i = 0; i < list.ArrayLen(); ++i) {
+    const Value& name = memberOf(elementOf(list, i), "name");
+    names.push_back(name.IsString() ? name.Get<std::string>() : "");
+  }
+  return names;
+}
+
+// The valid mappings of a primitive.
+struct VariantMapping {
+  int material;
+  std::vector<int> variants;
+};
+std::vector<VariantMapping> mappingsOf(const Value& extension) {
+  std::vector<VariantMapping> result;
+  const Value& mappings = memberOf(extension, "mappings");
+  for (size_t i = 0; i < mappings.ArrayLen(); ++i) {
+    const Value& mapping = elementOf(mappings, i);
+    if (!memberOf(mapping, "material").IsInt()) continue;
+    VariantMapping& m =
+        result.emplace_back(VariantMapping{memberOf(mapping, "material").GetNumberAsInt(), {}});
+    const Value& variants = memberOf(mapping, "variants");
+    for (size_t k = 0; k < variants.ArrayLen(); ++k)
+      if (elementOf(variants, k).IsInt())
+        m.variants.push_back(elementOf(variants, k).GetNumberAsInt());
+  }
+  return result;
+}
+
+// Warns if the mapping refers to variants or materials that do not exist.
+void warnOfDangling(GltfFile& file, const VariantMapping& mapping, size_t variantCount) {
+  for (const int variant : mapping.variants)
+    if (variant < 0 || size_t(variant) >= variantCount)
+      file.warnOnce(
+          fmt::format("a mapping refers to variants[{}], which does not exist ({} in the file)",
+                      variant, variantCount));
+  if (mapping.material < 0 || size_t(mapping.material) >= file.model.materials.size())
+    file.warnOnce(
+        fmt::format("a mapping refers to materials[{}], which does not exist ({} in the file)",
+                    mapping.material, file.model.materials.size()));
+}
+
+// Gives each primitive its material in the variant.
+void applyVariant(GltfFile& file, const VariantChoice& choice) {
+  const std::vector<std::string> names = variantNames(file);
+  const auto found = std::find(names.begin(), names.end(), choice.name);
+  if (names.empty()) file.fail("has no variants ({})", choice.location);
+  if (found == names.end())
+    file.fail("has no variant `{}` ({}); {}", choice.name, choice.location,
+              didYouMean(choice.name, {names.begin(), names.end()}));
+  const int variant = int(found - names.begin());
+  bool isUsed = false;
+  for (tinygltf::Mesh& mesh : file.model.meshes)
+    for (tinygltf::Primitive& primitive : mesh.primitives) {
+      const Value* extension = findExtension(primitive.extensions, kVariants);
+      if (!extension) continue;
+      for (const VariantMapping& mapping : mappingsOf(*extension)) {
+        warnOfDangling(file, mapping, names.size());
+        const auto& variants = mapping.variants;
+        const bool exists =
+            mapping.material >= 0 && size_t(mapping.material) < file.model.materials.size();
+        if (!exists || std::find(variants.begin(), variants.end(), variant) == variants.end())
+          continue;
+        primitive.material = mapping.material;
+        isUsed = true;
+      }
+    }
+  if (!isUsed)
+    file.warnOnce(
+        fmt::format("variant `{}` has no effect: no primitive has a material for it", choice.name));
 }
 
 // The file with its variant applied; from an earlier load if the cache keeps files.
