@@ -33,20 +33,10 @@ struct Elements {
 // size.
 constexpr size_t kMaxElementsWithoutView = size_t(1) << 24;
 
+// 0 for types that glTF 2.0 does not have, of which tinygltf knows two.
 size_t componentSize(int type) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      return 0;
-  }
+  if (type == TINYGLTF_COMPONENT_TYPE_INT || type == TINYGLTF_COMPONENT_TYPE_DOUBLE) return 0;
+  return size_t(std::max(tinygltf::GetComponentSizeInBytes(uint32_t(type)), 0));
 }
 
 // Throws unless `count` elements of `size` bytes, `stride` bytes apart, fit into the buffer view
@@ -176,20 +166,8 @@ void convert(const Elements& elements, float* out) {
 }
 
 void toFloats(const Elements& elements, float* out) {
-  switch (elements.componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return convert<int8_t>(elements, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return convert<uint8_t>(elements, out);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return convert<int16_t>(elements, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return convert<uint16_t>(elements, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return convert<uint32_t>(elements, out);
-    default:
-      return convert<float>(elements, out);
-  }
+  withComponentType(elements.componentType,
+                    [&](auto zero) { convert<decltype(zero)>(elements, out); });
 }
 
 void checkComponents(const GltfFile& file, const Elements& elements, int expected, int accessor,
