@@ -52,6 +52,16 @@ void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
   array = std::move(gathered);
 }
 
+// Replaces all vertex arrays: the new vertex i is a copy of the old vertex source[i]. Does not
+// change the triangles.
+void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source) {
+  gather(mesh.positions, source);
+  gather(mesh.normals, source);
+  gather(mesh.tangents, source);
+  gather(mesh.colors, source);
+  for (auto& uv : mesh.uvs) gather(uv, source);
+}
+
 // The triangle's normal times twice its area.
 dvec3 areaNormal(const Mesh& mesh, const Triangle& t) {
   const dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
@@ -113,14 +123,6 @@ bool areFinite(const std::vector<vec3>& points) {
     if (!std::all_of(points.data() + begin, points.data() + end, isFinite)) all = false;
   });
   return all;
-}
-
-void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source) {
-  gather(mesh.positions, source);
-  gather(mesh.normals, source);
-  gather(mesh.tangents, source);
-  gather(mesh.colors, source);
-  for (auto& uv : mesh.uvs) gather(uv, source);
 }
 
 void dropUnusedVertices(Mesh& mesh) {

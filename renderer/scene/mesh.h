@@ -87,10 +87,6 @@ class MeshList {
 
 bool areFinite(const std::vector<vec3>& points);
 
-// Replaces all vertex arrays: the new vertex i is a copy of the old vertex source[i]. Does not
-// change the triangles.
-void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source);
-
 // Drops the vertices that no triangle uses.
 void dropUnusedVertices(Mesh& mesh);
 

@@ -50,8 +50,6 @@ class LineProblem {
   bool findsFocalLength_;
 };
 
-double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
-
 // The vanishing point of the direction d is f (d.x, d.y) / -d.z; minus the middle, times -d.z.
 dvec2 LineProblem::flow(const LineView& view, const CentredLine& line) {
   const dvec3& d = view.rotation[line.axis];
