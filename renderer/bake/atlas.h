@@ -2,7 +2,6 @@
 // The places of charts on a square page of texels.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "bake/charts.h"

@@ -2,7 +2,6 @@
 // Indexed triangles, and lists of them that scenes share.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 

@@ -3,11 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "bake/vertex_light.h"
 #include "base/error.h"
-#include "math/vec.h"
 #include "relight/transfer/transfer_points.h"
 
 namespace chromeball {

@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "scene/mesh.h"
 
 namespace chromeball {
 namespace {

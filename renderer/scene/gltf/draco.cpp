@@ -124,7 +124,7 @@ class DracoReader {
     const Value& attributes = memberOf(extension, "attributes");
     if (!memberOf(extension, "bufferView").IsInt() || !attributes.IsObject())
       file_.fail("{}: has no bufferView or no attributes", where);
-    const int view = memberOf(extension, "bufferView").GetNumberAsInt();
+    const int view = intMember(extension, "bufferView");
     const draco::Mesh& mesh = meshOf(view, ownCount(primitive.indices, where + ".indices"), where);
     if (tinygltf::Accessor* indices =
             toFill(primitive.indices, {view, kIndices}, where + ".indices")) {
@@ -135,14 +135,11 @@ class DracoReader {
       const auto user = primitive.attributes.find(name);
       if (user == primitive.attributes.end()) continue;
       const std::string at = where + ".attributes." + name;
-      const Value& id = memberOf(attributes, name);
-      tinygltf::Accessor* target =
-          toFill(user->second, {view, id.IsInt() ? id.GetNumberAsInt() : -1}, at);
+      const int id = intMember(attributes, name);
+      tinygltf::Accessor* target = toFill(user->second, {view, id}, at);
       if (!target) continue;
       const draco::PointAttribute* attribute =
-          id.IsInt() && id.GetNumberAsInt() >= 0
-              ? mesh.GetAttributeByUniqueId(uint32_t(id.GetNumberAsInt()))
-              : nullptr;
+          id >= 0 ? mesh.GetAttributeByUniqueId(uint32_t(id)) : nullptr;
       if (!attribute) file_.fail("{}: the compressed mesh has no such attribute", at);
       file_.spend(uint64_t(mesh.num_points()) * 16);
       setData(*target, mesh.num_points(), attributeBytes(file_, mesh, *attribute, *target, at));

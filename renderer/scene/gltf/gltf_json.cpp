@@ -252,6 +252,16 @@ const tinygltf::Value& elementOf(const tinygltf::Value& array, size_t index) {
   return index < array.ArrayLen() ? array.Get(int(index)) : none;
 }
 
+int intMember(const tinygltf::Value& object, const std::string& key, int fallback) {
+  const tinygltf::Value& v = memberOf(object, key);
+  return v.IsInt() ? v.GetNumberAsInt() : fallback;
+}
+
+std::string textMember(const tinygltf::Value& object, const char* key, const char* fallback) {
+  const tinygltf::Value& v = memberOf(object, key);
+  return v.IsString() ? v.Get<std::string>() : fallback;
+}
+
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name) {
   const auto found = extensions.find(name);
   return found == extensions.end() || !found->second.IsObject() ? nullptr : &found->second;

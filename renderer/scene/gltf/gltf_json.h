@@ -60,6 +60,10 @@ void checkMemberTypes(nlohmann::json& root);
 const tinygltf::Value& memberOf(const tinygltf::Value& object, const std::string& key);
 const tinygltf::Value& elementOf(const tinygltf::Value& array, size_t index);
 
+// A member that is a whole number, or a string; `fallback` if there is none.
+int intMember(const tinygltf::Value& object, const std::string& key, int fallback = -1);
+std::string textMember(const tinygltf::Value& object, const char* key, const char* fallback = "");
+
 // The extension's object; null if it is absent or not an object.
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name);
 

@@ -48,8 +48,7 @@ Rgb color(const GltfFile& file, const Value& light, const std::string& where) {
 
 PunctualLight readLight(const GltfFile& file, const Value& source, LightUnits units,
                         const std::string& where) {
-  const std::string type =
-      memberOf(source, "type").IsString() ? memberOf(source, "type").Get<std::string>() : "";
+  const std::string type = textMember(source, "type");
   PunctualLight light;
   light.kind = type == "directional" ? Kind::Directional
                : type == "spot"      ? Kind::Spot
@@ -106,8 +105,6 @@ std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, Ligh
 
 namespace {
 
-using tinygltf::Value;
-
 constexpr const char* kEnvironmentExtension = "EXT_lights_image_based";
 constexpr int kFaces = 6, kMaxFace = 2048;
 
@@ -118,12 +115,10 @@ const Value* findLight(const GltfFile& file, std::string& where) {
   const Value* use = findExtension(file.at(file.model.scenes, scene, "scenes", "scene").extensions,
                                    kEnvironmentExtension);
   if (!use) return nullptr;
-  const Value& light = memberOf(*use, "light");
   const Value* root = findExtension(file.model.extensions, kEnvironmentExtension);
-  const int index = light.IsInt() ? light.GetNumberAsInt() : -1;
+  const int index = intMember(*use, "light");
   where = fmt::format("{}.lights[{}]", kEnvironmentExtension, index);
-  if (index < 0 || !root || !memberOf(*root, "lights").IsArray() ||
-      size_t(index) >= memberOf(*root, "lights").ArrayLen())
+  if (index < 0 || !root || size_t(index) >= memberOf(*root, "lights").ArrayLen())
     file.fail("scenes[{}]: {} does not exist", scene, where);
   return &elementOf(memberOf(*root, "lights"), size_t(index));
 }

@@ -93,10 +93,8 @@ std::vector<std::string> variantNames(const GltfFile& file) {
   const Value* extension = findExtension(file.model.extensions, kVariants);
   if (!extension) return names;
   const Value& list = memberOf(*extension, "variants");
-  for (size_t i = 0; i < list.ArrayLen(); ++i) {
-    const Value& name = memberOf(elementOf(list, i), "name");
-    names.push_back(name.IsString() ? name.Get<std::string>() : "");
-  }
+  for (size_t i = 0; i < list.ArrayLen(); ++i)
+    names.push_back(textMember(elementOf(list, i), "name"));
   return names;
 }
 

@@ -19,12 +19,11 @@ Rgb MaterialReader::Extension::color(const char* key, const Rgb& fallback, doubl
 TextureSlot MaterialReader::Extension::texture(const char* key, TexelUse use) const {
   const Value& info = memberOf(object, key);
   if (!info.IsObject() || !memberOf(info, "index").IsInt()) return {};
-  const Value& set = memberOf(info, "texCoord");
   tinygltf::ExtensionMap extensions;
   if (const Value& nested = memberOf(info, "extensions"); nested.IsObject())
     for (const std::string& name : nested.Keys()) extensions[name] = memberOf(nested, name);
-  return reader.slot(memberOf(info, "index").GetNumberAsInt(),
-                     set.IsInt() ? set.GetNumberAsInt() : 0, extensions, use, where + "." + key);
+  return reader.slot(intMember(info, "index"), intMember(info, "texCoord", 0), extensions, use,
+                     where + "." + key);
 }
 
 std::optional<MaterialReader::Extension> MaterialReader::find(

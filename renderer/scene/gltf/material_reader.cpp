@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "scene/gltf/decode_images.h"
 #include "scene/gltf/gltf_json.h"
 
@@ -145,7 +143,7 @@ TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::Extension
     s.uvRow0 = vec2(c, sn) * scale;
     s.uvRow1 = vec2(-sn, c) * scale;
     s.uvOffset = vectorMember<2>(file_, *e, "offset", vec2(0), -INFINITY, INFINITY, at);
-    if (memberOf(*e, "texCoord").IsInt()) s.uvSet = memberOf(*e, "texCoord").GetNumberAsInt();
+    s.uvSet = intMember(*e, "texCoord", uvSet);
   }
   if (s.uvSet < 0 || s.uvSet > kMaxUvSet)
     file_.fail("{}: texCoord {} is not in the range 0 to {}", where, s.uvSet, kMaxUvSet);
@@ -156,7 +154,7 @@ int MaterialReader::texture(int index, TexelUse use, const std::string& where) {
   const tinygltf::Texture& source = file_.at(file_.model.textures, index, "textures", where);
   int image = source.source;
   if (const Value* e = findExtension(source.extensions, "EXT_texture_webp"))
-    image = memberOf(*e, "source").IsInt() ? memberOf(*e, "source").GetNumberAsInt() : -1;
+    image = intMember(*e, "source");
   if (image == -1 && findExtension(source.extensions, "KHR_texture_basisu"))
     file_.fail(
         "textures[{}]: has only a KTX2 image (KHR_texture_basisu), which is not supported; "

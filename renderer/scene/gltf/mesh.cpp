@@ -11,7 +11,6 @@
 #include "scene/builder/complete_mesh.h"
 #include "scene/extended_surface.h"
 #include "scene/gltf/accessor.h"
-#include "scene/gltf/animation.h"
 #include "scene/mesh.h"
 
 namespace chromeball {
