@@ -2,6 +2,7 @@
 // Indexed triangles, and lists of them that scenes share.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -72,10 +73,8 @@ class MeshList {
   Iterator end() const { return Iterator(meshes_.data() + meshes_.size()); }
 
   bool operator==(const MeshList& other) const {
-    if (size() != other.size()) return false;
-    for (size_t i = 0; i < size(); ++i)
-      if (meshes_[i] != other.meshes_[i] && *meshes_[i] != *other.meshes_[i]) return false;
-    return true;
+    return std::ranges::equal(meshes_, other.meshes_,
+                              [](const Shared& a, const Shared& b) { return a == b || *a == *b; });
   }
 
  private:

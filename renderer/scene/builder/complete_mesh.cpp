@@ -11,10 +11,6 @@
 namespace chromeball {
 namespace {
 
-bool areAllFinite(const vec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
-bool areAllFinite(const vec3& v) { return isFinite(v); }
-bool areAllFinite(const vec4& v) { return isFinite(vec3(v)) && std::isfinite(v.w); }
-
 template <class T>
 void checkLength(const std::vector<T>& array, size_t vertices, const std::string& name) {
   if (!array.empty() && array.size() != vertices)
@@ -24,7 +20,8 @@ void checkLength(const std::vector<T>& array, size_t vertices, const std::string
 template <class T>
 void checkFinite(const std::vector<T>& array, const std::string& name) {
   for (size_t i = 0; i < array.size(); ++i)
-    if (!areAllFinite(array[i])) throwInput("{}[{}]: is not finite", name, i);
+    for (int k = 0; k < T::length(); ++k)
+      if (!std::isfinite(array[i][k])) throwInput("{}[{}]: is not finite", name, i);
 }
 
 void checkTriangles(const Mesh& mesh, const std::string& name) {

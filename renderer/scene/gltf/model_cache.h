@@ -17,8 +17,6 @@
 
 namespace chromeball {
 
-// Decoded images that several loads of one model share, as for the frames of an animation.
-
 using MipChain = std::shared_ptr<const std::vector<TexelGrid>>;
 
 struct TexelCache {
@@ -32,8 +30,6 @@ struct TexelCache {
   std::map<std::tuple<const TexelGrid*, bool, bool>, MipChain> chains;
 };
 
-// Which meshes of a glTF file are equal.
-
 // Everything that determines an unskinned mesh: primitives with equal recipes have equal meshes.
 struct MeshRecipe {
   int mode, indices;
@@ -46,8 +42,6 @@ struct MeshRecipe {
 
   auto operator<=>(const MeshRecipe&) const = default;
 };
-
-// Meshes that several loads of one model share, as for the frames of an animation.
 
 // Everything that determines a mesh of a scene.
 struct MeshKey {

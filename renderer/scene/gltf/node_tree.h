@@ -31,11 +31,4 @@ NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::
 // none.
 Scene readInstances(GltfFile& file, const NodeTree& tree, ModelCache* cache);
 
-// EXT_mesh_gpu_instancing: a node with several instances of its mesh.
-
-// The transforms of the node's instances, relative to the node; one identity if it does not use the
-// extension, or without transforms.
-std::vector<glm::dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& node,
-                                               const std::string& where);
-
 }  // namespace chromeball
