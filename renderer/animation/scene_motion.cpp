@@ -12,10 +12,6 @@
 namespace chromeball {
 namespace {
 
-bool mirrors(const Instance& instance) {
-  return instance.toWorld && glm::determinant(instance.toWorld->linear) < 0;
-}
-
 // For each instance of `scene`, the same part in `other`; null if the node has other parts there,
 // or ones that are turned inside out.
 std::vector<const Instance*> partsIn(const Scene& other, const Scene& scene) {
@@ -30,7 +26,7 @@ std::vector<const Instance*> partsIn(const Scene& other, const Scene& scene) {
       const Mesh &a = scene.meshes[size_t(parts[i]->mesh)],
                  &b = other.meshes[size_t(there[i]->mesh)];
       if (a.positions.size() == b.positions.size() && a.triangles == b.triangles &&
-          mirrors(*parts[i]) == mirrors(*there[i]))
+          parts[i]->mirrors() == there[i]->mirrors())
         found[size_t(parts[i] - scene.instances.data())] = there[i];
     }
   }

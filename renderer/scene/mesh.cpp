@@ -40,8 +40,6 @@ namespace {
 
 using glm::dvec3;
 
-constexpr vec3 kUp(0, 1, 0);  // of vertices without a normal
-
 template <class T>
 void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
   if (array.empty()) return;
@@ -68,13 +66,16 @@ dvec3 areaNormal(const Mesh& mesh, const Triangle& t) {
   return glm::cross(b - a, c - a);
 }
 
-// Returns false if the vector is zero or not finite. Double precision keeps the length of tiny and
-// huge float vectors from becoming 0 or infinite.
-bool normalize(dvec3& v) {
+// 0 if the vector is zero or not finite. Double precision keeps the length of tiny and huge float
+// vectors from becoming 0 or infinite.
+dvec3 directionOrZero(const dvec3& v) {
   const double length = glm::length(v);
-  if (!(length > 0) || !std::isfinite(length)) return false;
-  v /= length;
-  return true;
+  return length > 0 && std::isfinite(length) ? v / length : dvec3(0);
+}
+
+vec3 directionOrUp(const dvec3& v) {
+  const dvec3 direction = directionOrZero(v);
+  return direction == dvec3(0) ? vec3(0, 1, 0) : vec3(direction);
 }
 
 dvec3 anyPerpendicular(const dvec3& n) {
@@ -89,8 +90,8 @@ void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
   std::mutex adding;
   forRanges(mesh.normals.size(), [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      dvec3 n = linear * dvec3(mesh.normals[i]);
-      if (normalize(n)) {
+      const dvec3 n = directionOrZero(linear * dvec3(mesh.normals[i]));
+      if (n != dvec3(0)) {
         mesh.normals[i] = vec3(n);
       } else {
         const std::lock_guard lock(adding);
@@ -105,7 +106,7 @@ void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
     const dvec3 n = areaNormal(mesh, t);
     for (int k = 0; k < 3; ++k) around[t[k]] += n;
   }
-  for (uint32_t i : bad) mesh.normals[i] = normalize(around[i]) ? vec3(around[i]) : kUp;
+  for (uint32_t i : bad) mesh.normals[i] = directionOrUp(around[i]);
 }
 
 template <class T, class Change>
@@ -152,8 +153,7 @@ void makeFlat(Mesh& mesh) {
   gatherVertices(mesh, source);
   mesh.normals = longArray<vec3>(3 * count);
   forEach(mesh.triangles, [&](const Triangle& t) {
-    dvec3 n = areaNormal(mesh, t);
-    mesh.normals[t.x] = mesh.normals[t.y] = mesh.normals[t.z] = normalize(n) ? vec3(n) : kUp;
+    mesh.normals[t.x] = mesh.normals[t.y] = mesh.normals[t.z] = directionOrUp(areaNormal(mesh, t));
   });
 }
 
@@ -163,8 +163,8 @@ void repairTangents(Mesh& mesh) {
   forRanges(mesh.tangents.size(), [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const vec4& given = mesh.tangents[i];
-      dvec3 t(given);
-      if (!normalize(t)) t = anyPerpendicular(dvec3(mesh.normals[i]));
+      dvec3 t = directionOrZero(dvec3(given));
+      if (t == dvec3(0)) t = anyPerpendicular(dvec3(mesh.normals[i]));
       mesh.tangents[i] = vec4(vec3(t), given.w < 0 ? -1 : 1);
     }
   });
@@ -196,11 +196,6 @@ using glm::dvec3;
 // The orientation of UV space in a triangle. Unlike handedness, which also depends on the side that
 // a vertex normal is on, it is the same in all poses of a mesh: these are split alike.
 enum Winding { kClockwise = 0, kCounter = 1, kUndefined = 2 };  // as (x, y); no area
-
-dvec3 directionOrZero(const dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0 && std::isfinite(length) ? v / length : dvec3(0);
-}
 
 double cornerAngle(const std::array<dvec3, 3>& p, int k) {
   const dvec3 a = directionOrZero(p[(k + 1) % 3] - p[k]),

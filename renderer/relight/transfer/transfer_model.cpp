@@ -14,6 +14,8 @@
 namespace chromeball {
 namespace {
 
+constexpr const char* kOwnAttribute = "_PRT_OWN";
+
 // "haar:16" is the transform of "cube:16".
 DirectionBasis directionsOf(const std::string& name, const std::string& location) {
   const auto is = [&](const char* kind, int number) {
@@ -25,6 +27,17 @@ DirectionBasis directionsOf(const std::string& name, const std::string& location
     if (is("haar", cells)) return {fmt::format("cube:{}", cells), location};
   throwInput("{}: `{}` is not sh:ORDER, of order 0 to {}, or haar:N, N a power of two from 1 to {}",
              location, name, LightBasis::kMaxOrder, LightBasis::kMaxCells);
+}
+
+// A path from the front of a white Lambertian surface.
+EscapingPath pathFromWhite(const PathTracer& tracer, const Surface& surface, PathContext& context) {
+  PathState state;
+  state.ray = {surface.position + surface.normal, -surface.normal};
+  const MaterialPoint white{Rgb(1), 0, 1, Rgb(0), 0};
+  const Bsdf bsdf(white, surface, surface.normal, tracer.world().bsdfTables);
+  if (!tracer.scatter(state, surface, bsdf, context))
+    return {false, Rgb(0), vec3(0), state.radiance};
+  return follow(tracer, state, context);
 }
 
 }  // namespace
@@ -56,21 +69,6 @@ void keepMostImportant(const LightBasis& basis, size_t keep, std::span<Rgb> ligh
                            [&](size_t a, size_t b) { return importance(a) > importance(b); });
   for (size_t i = keep; i < order.size(); ++i) light[order[i]] = Rgb(0);
 }
-
-namespace {
-
-// A path from the front of a white Lambertian surface.
-EscapingPath pathFromWhite(const PathTracer& tracer, const Surface& surface, PathContext& context) {
-  PathState state;
-  state.ray = {surface.position + surface.normal, -surface.normal};
-  const MaterialPoint white{Rgb(1), 0, 1, Rgb(0), 0};
-  const Bsdf bsdf(white, surface, surface.normal, tracer.world().bsdfTables);
-  if (!tracer.scatter(state, surface, bsdf, context))
-    return {false, Rgb(0), vec3(0), state.radiance};
-  return follow(tracer, state, context);
-}
-
-}  // namespace
 
 VertexTransfer estimateTransfer(const World& world, const std::vector<PlacedMesh>& meshes,
                                 const std::vector<BakePoint>& points, const LightBasis& basis,
@@ -145,12 +143,6 @@ const std::vector<vec3>& TransferFile::attribute(size_t instance, const std::str
   throwInput("{}: node \"{}\" has no {}; {} has {} functions", path_, nodeName(instance), name,
              basis_.name(), basis_.size());
 }
-
-namespace {
-
-constexpr const char* kOwnAttribute = "_PRT_OWN";
-
-}  // namespace
 
 std::vector<BakedGeometry> transferGeometry(const std::vector<PlacedMesh>& meshes,
                                             const std::vector<BakePoint>& points,

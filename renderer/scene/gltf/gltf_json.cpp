@@ -40,6 +40,11 @@ std::set<std::string> namesIn(const json& root, const char* key) {
   return names;
 }
 
+bool exceedsInt(const json& value) {
+  if (value.is_number_unsigned()) return value.get<uint64_t>() > uint64_t(INT_MAX);
+  return value.is_number_integer() && value.get<int64_t>() < INT_MIN;
+}
+
 }  // namespace
 
 void checkVersion(const json& root) {
@@ -96,25 +101,14 @@ int fillGaps(json& root) {
   return none;
 }
 
-namespace {
-
-bool exceedsInt(const json& value) {
-  if (value.is_number_unsigned()) return value.get<uint64_t>() > uint64_t(INT_MAX);
-  return value.is_number_integer() && value.get<int64_t>() < INT_MIN;
-}
-
-void keepLargeNumbersOf(json& value, bool inExtension) {
+void keepLargeNumbers(json& value, bool inExtension) {
   if (inExtension && exceedsInt(value)) value = value.get<double>();
   if (value.is_array())
-    for (json& element : value) keepLargeNumbersOf(element, inExtension);
+    for (json& element : value) keepLargeNumbers(element, inExtension);
   if (value.is_object())
     for (auto& [key, member] : value.items())
-      keepLargeNumbersOf(member, inExtension || key == "extensions" || key == "extras");
+      keepLargeNumbers(member, inExtension || key == "extensions" || key == "extras");
 }
-
-}  // namespace
-
-void keepLargeNumbers(json& root) { keepLargeNumbersOf(root, false); }
 
 json takeArray(json& root, const char* key) {
   const auto found = root.find(key);
@@ -136,8 +130,6 @@ std::string stringMember(const json& object, const char* key) {
 }
 
 namespace {
-
-using nlohmann::json;
 
 // The place of a value in the file: a member or an element of its parent.
 struct JsonPlace {

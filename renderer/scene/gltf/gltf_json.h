@@ -32,7 +32,7 @@ int fillGaps(nlohmann::json& root);
 
 // tinygltf reads whole numbers in extensions and extras as int. Those that exceed its range become
 // floating-point numbers.
-void keepLargeNumbers(nlohmann::json& root);
+void keepLargeNumbers(nlohmann::json& value, bool inExtension = false);
 
 // Removes an array from the file and returns it; empty if there is none.
 nlohmann::json takeArray(nlohmann::json& root, const char* key);

@@ -33,7 +33,11 @@ std::optional<MaterialReader::Extension> MaterialReader::find(
   return Extension{*this, *object, where};
 }
 
-void MaterialReader::readVolume(const Extension& e, ExtendedMaterial& m) {
+namespace {
+
+using Extension = MaterialReader::Extension;
+
+void readVolume(const Extension& e, ExtendedMaterial& m) {
   // thicknessFactor only tells whether the mesh is a body; the geometry tells its thickness.
   m.thinWalled = e.number("thicknessFactor", 0, 0, INFINITY) == 0;
   if (!memberOf(e.object, "attenuationDistance").IsNumber()) return;
@@ -43,7 +47,7 @@ void MaterialReader::readVolume(const Extension& e, ExtendedMaterial& m) {
   m.attenuation = -glm::log(glm::max(color, Rgb(1e-6f))) / distance;
 }
 
-void MaterialReader::readClearcoat(const Extension& e, ExtendedMaterial& m) {
+void readClearcoat(const Extension& e, ExtendedMaterial& m) {
   m.clearcoat = e.number("clearcoatFactor", 0);
   m.clearcoatTexture = e.texture("clearcoatTexture");
   m.clearcoatRoughness = e.number("clearcoatRoughnessFactor", 0);
@@ -52,10 +56,11 @@ void MaterialReader::readClearcoat(const Extension& e, ExtendedMaterial& m) {
   const Value& normal = memberOf(e.object, "clearcoatNormalTexture");
   if (normal.IsObject())
     m.clearcoatNormalScale =
-        member(e.reader.file_, normal, "scale", 1, -1e6, 1e6, e.where + ".clearcoatNormalTexture");
+        Extension{e.reader, normal, e.where + ".clearcoatNormalTexture"}.number("scale", 1, -1e6,
+                                                                                1e6);
 }
 
-void MaterialReader::readIridescence(const Extension& e, ExtendedMaterial& m) {
+void readIridescence(const Extension& e, ExtendedMaterial& m) {
   m.iridescence = e.number("iridescenceFactor", 0);
   m.iridescenceTexture = e.texture("iridescenceTexture");
   m.filmIor = e.number("iridescenceIor", 1.3, 1, 1e3);
@@ -63,6 +68,8 @@ void MaterialReader::readIridescence(const Extension& e, ExtendedMaterial& m) {
   m.filmMaxThickness = e.number("iridescenceThicknessMaximum", 400, 0, 1e6);
   m.filmThicknessTexture = e.texture("iridescenceThicknessTexture");
 }
+
+}  // namespace
 
 std::optional<ExtendedMaterial> MaterialReader::readExtensions(
     const tinygltf::ExtensionMap& extensions, const std::string& where) {

@@ -32,9 +32,6 @@ class MaterialReader {
   // scene.
   void moveInto(Scene& scene);
 
- private:
-  using TextureKey = std::tuple<int, Wrap, Wrap, Filter, bool, bool>;
-
   // The object of a material's extension, with its place in the file.
   struct Extension {
     MaterialReader& reader;
@@ -45,6 +42,10 @@ class MaterialReader {
     Rgb color(const char* key, const Rgb& fallback, double high = 1) const;
     TextureSlot texture(const char* key, TexelUse use = {}) const;
   };
+
+ private:
+  using TextureKey = std::tuple<int, Wrap, Wrap, Filter, bool, bool>;
+
   std::optional<Extension> find(const tinygltf::ExtensionMap& extensions, const char* name,
                                 const std::string& where);
 
@@ -63,9 +64,6 @@ class MaterialReader {
   // nullopt if the extensions have no effect.
   std::optional<ExtendedMaterial> readExtensions(const tinygltf::ExtensionMap& extensions,
                                                  const std::string& where);
-  static void readVolume(const Extension& e, ExtendedMaterial& m);
-  static void readClearcoat(const Extension& e, ExtendedMaterial& m);
-  static void readIridescence(const Extension& e, ExtendedMaterial& m);
 
   GltfFile& file_;
   TexelCache* cache_;
