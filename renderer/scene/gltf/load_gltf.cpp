@@ -98,38 +98,30 @@ std::vector<std::string> variantNames(const GltfFile& file) {
   return names;
 }
 
-// The valid mappings of a primitive.
-struct VariantMapping {
-  int material;
-  std::vector<int> variants;
-};
-std::vector<VariantMapping> mappingsOf(const Value& extension) {
-  std::vector<VariantMapping> result;
-  const Value& mappings = memberOf(extension, "mappings");
-  for (size_t i = 0; i < mappings.ArrayLen(); ++i) {
-    const Value& mapping = elementOf(mappings, i);
-    if (!memberOf(mapping, "material").IsInt()) continue;
-    VariantMapping& m =
-        result.emplace_back(VariantMapping{memberOf(mapping, "material").GetNumberAsInt(), {}});
-    const Value& variants = memberOf(mapping, "variants");
-    for (size_t k = 0; k < variants.ArrayLen(); ++k)
-      if (elementOf(variants, k).IsInt())
-        m.variants.push_back(elementOf(variants, k).GetNumberAsInt());
-  }
-  return result;
+// Warns if the element to which a mapping refers does not exist.
+bool isThere(GltfFile& file, const char* array, int index, size_t count) {
+  if (index >= 0 && size_t(index) < count) return true;
+  file.warnOnce(fmt::format("a mapping refers to {}[{}], which does not exist ({} in the file)",
+                            array, index, count));
+  return false;
 }
 
-// Warns if the mapping refers to variants or materials that do not exist.
-void warnOfDangling(GltfFile& file, const VariantMapping& mapping, size_t variantCount) {
-  for (const int variant : mapping.variants)
-    if (variant < 0 || size_t(variant) >= variantCount)
-      file.warnOnce(
-          fmt::format("a mapping refers to variants[{}], which does not exist ({} in the file)",
-                      variant, variantCount));
-  if (mapping.material < 0 || size_t(mapping.material) >= file.model.materials.size())
-    file.warnOnce(
-        fmt::format("a mapping refers to materials[{}], which does not exist ({} in the file)",
-                    mapping.material, file.model.materials.size()));
+// Gives the primitive the material of a mapping if that is for the variant. Returns whether it is.
+bool applyMapping(GltfFile& file, const Value& mapping, int variant, size_t variantCount,
+                  tinygltf::Primitive& primitive) {
+  if (!memberOf(mapping, "material").IsInt()) return false;
+  const Value& variants = memberOf(mapping, "variants");
+  bool isMeant = false;
+  for (size_t i = 0; i < variants.ArrayLen(); ++i) {
+    if (!elementOf(variants, i).IsInt()) continue;
+    const int other = elementOf(variants, i).GetNumberAsInt();
+    isThere(file, "variants", other, variantCount);
+    isMeant |= other == variant;
+  }
+  const int material = intMember(mapping, "material");
+  if (!isThere(file, "materials", material, file.model.materials.size()) || !isMeant) return false;
+  primitive.material = material;
+  return true;
 }
 
 // Gives each primitive its material in the variant.
@@ -146,16 +138,9 @@ void applyVariant(GltfFile& file, const VariantChoice& choice) {
     for (tinygltf::Primitive& primitive : mesh.primitives) {
       const Value* extension = findExtension(primitive.extensions, kVariants);
       if (!extension) continue;
-      for (const VariantMapping& mapping : mappingsOf(*extension)) {
-        warnOfDangling(file, mapping, names.size());
-        const auto& variants = mapping.variants;
-        const bool exists =
-            mapping.material >= 0 && size_t(mapping.material) < file.model.materials.size();
-        if (!exists || std::find(variants.begin(), variants.end(), variant) == variants.end())
-          continue;
-        primitive.material = mapping.material;
-        isUsed = true;
-      }
+      const Value& mappings = memberOf(*extension, "mappings");
+      for (size_t i = 0; i < mappings.ArrayLen(); ++i)
+        isUsed |= applyMapping(file, elementOf(mappings, i), variant, names.size(), primitive);
     }
   if (!isUsed)
     file.warnOnce(
