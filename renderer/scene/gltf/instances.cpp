@@ -27,21 +27,6 @@ Transform roundToFloat(const dmat4& m) { return {glm::mat3(glm::dmat3(m)), vec3(
 
 constexpr const char* kInstancingExtension = "EXT_mesh_gpu_instancing";
 
-// The attribute of each instance; empty if the node does not have it.
-template <int N>
-std::vector<glm::vec<N, float>> readAttribute(GltfFile& file, const tinygltf::Value& attributes,
-                                              const char* name, size_t& count,
-                                              const std::string& where) {
-  const tinygltf::Value& accessor = memberOf(attributes, name);
-  if (!accessor.IsInt()) return {};
-  const std::string at = where + "." + name;
-  auto elements = readVectors<N>(file, accessor.GetNumberAsInt(), at);
-  if (count == 0) count = elements.size();
-  if (elements.size() != count)
-    file.fail("{}: {} elements for {} instances", at, elements.size(), count);
-  return elements;
-}
-
 // The transforms of the node's instances, relative to the node; one identity if it does not use the
 // extension, or without transforms.
 std::vector<dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& node,
@@ -50,12 +35,16 @@ std::vector<dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& 
   if (found == node.extensions.end()) return {dmat4(1)};
   const std::string at = where + "." + kInstancingExtension;
   const tinygltf::Value& attributes = memberOf(found->second, "attributes");
-  size_t count = 0;
-  const auto translations = readAttribute<3>(file, attributes, "TRANSLATION", count, at);
-  const auto rotations = readAttribute<4>(file, attributes, "ROTATION", count, at);
-  const auto scales = readAttribute<3>(file, attributes, "SCALE", count, at);
+  std::map<std::string, int> accessors;
+  for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
+    if (memberOf(attributes, name).IsInt()) accessors[name] = intMember(attributes, name);
+  AttributeReader reader(file, accessors, "instances", at + ".");
+  const auto translations = reader.read("TRANSLATION", readVectors<3>);
+  const auto rotations = reader.read("ROTATION", readVectors<4>);
+  const auto scales = reader.read("SCALE", readVectors<3>);
   if (translations.empty() && rotations.empty() && scales.empty()) return {dmat4(1)};
 
+  const size_t count = reader.count();
   file.spend(count * sizeof(dmat4));
   std::vector<dmat4> transforms(count, dmat4(1));
   for (size_t i = 0; i < count; ++i) {
