@@ -50,15 +50,13 @@ class PointLight {
   float distance_;
 };
 
-// The samples of all points, on all threads.
-
 // The scratch of a thread.
 struct PointWorker {
   PathContext context;
   InvalidSamples invalid;  // at the points' x and y
 };
 
-// Results depend on points, samples and seed only.
+// The samples of all points, on all threads. Results depend on points, samples and seed only.
 class PointSamples {
  public:
   // All arguments must outlive this. `meshes`: all instances of the world. `samples`: of a point,

@@ -74,8 +74,6 @@ struct TextureSlot {
   float areaFactor() const { return std::fabs(uvRow0.x * uvRow1.y - uvRow0.y * uvRow1.x); }
 };
 
-// Mip levels of a texture.
-
 // The grid at half its size, at a quarter, and so on down to one texel; empty for a grid of one
 // texel. Each texel is the mean, in linear light, of the texels it covers, stored like those of the
 // grid (`srgb`: encoded). With `weightedByAlpha`, colours are weighted by alpha unless all alphas

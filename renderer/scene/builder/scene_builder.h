@@ -67,8 +67,6 @@ class SceneBuilder {
   std::map<std::tuple<const TexelGrid*, bool, bool>, MipChain> chains_;  // by srgb, weightedByAlpha
 };
 
-// Lamps of a scene file, added to a scene.
-
 // Adds the lamp to the scene, whose origin is at `origin` in world space. A disc becomes a
 // single-sided emitting polygon of kDiscSides sides with exactly the area of the disc.
 inline constexpr int kDiscSides = 128;

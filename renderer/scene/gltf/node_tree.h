@@ -24,8 +24,6 @@ struct NodeTree {
 // finite.
 NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::dvec3& origin);
 
-// The meshes, materials and transforms of a glTF file's nodes.
-
 // A scene with the meshes, instances, materials and textures of the visible nodes in the tree.
 // Geometry that several primitives share is stored once. `cache` receives the data read; null:
 // none.
