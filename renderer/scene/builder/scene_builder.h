@@ -60,7 +60,6 @@ class SceneBuilder {
   void addAmbient(const AmbientLamp& light);
 
  private:
-  using MipChain = std::shared_ptr<const std::vector<TexelGrid>>;
   int addTexture(Texture texture);
 
   Scene& scene_;

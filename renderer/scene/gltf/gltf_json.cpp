@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 bool isSupported(std::string_view extension) {
-  return extension == "KHR_mesh_quantization" || extension == "KHR_meshopt_compression" ||
+  return extension == "KHR_mesh_quantization" ||
          ((extension.starts_with("EXT_") || extension.starts_with("KHR_")) &&
           findObjectType(extension));
 }
@@ -212,12 +212,8 @@ void checkType(json& value, std::string_view type, const JsonPlace& place) {
 
 void checkExtensionTypes(json& extensions, const JsonPlace& place) {
   require(extensions.is_object(), extensions, "object", place);
-  const auto kindOf = [](std::string_view name) {
-    return name == "KHR_meshopt_compression" ? "EXT_meshopt_compression"
-                                             : name;  // the same members
-  };
   for (const auto& [name, extension] : extensions.items())
-    if (const ObjectType* object = findObjectType(kindOf(name)))
+    if (const ObjectType* object = findObjectType(name))
       checkObject(extension, *object, {&place, name});
 }
 

@@ -17,8 +17,6 @@
 
 namespace chromeball {
 
-using MipChain = std::shared_ptr<const std::vector<TexelGrid>>;
-
 struct TexelCache {
   double limit = INFINITY;          // bytes; more texels in memory are refused
   double memory = INFINITY;         // bytes for texels in memory; with more, they go to `file`

@@ -7,6 +7,10 @@
 namespace chromeball {
 namespace {
 
+constexpr std::string_view kMeshopt =
+    "buffer:integer byteLength:size byteOffset:size byteStride:size count:size filter:string "
+    "mode:string";
+
 // An extension has the members of all places where it may occur.
 constexpr ObjectType kObjects[] = {
     {"File",
@@ -57,9 +61,7 @@ constexpr ObjectType kObjects[] = {
      "intensity:number irradianceCoefficients:number[][] rotation:number[] "
      "specularImages:integer[][]"},
     {"EXT_mesh_gpu_instancing", "attributes:integer{}"},
-    {"EXT_meshopt_compression",
-     "buffer:integer byteLength:size byteOffset:size byteStride:size count:size filter:string "
-     "mode:string"},
+    {"EXT_meshopt_compression", kMeshopt},
     {"EXT_texture_webp", "source:integer"},
     {"KHR_draco_mesh_compression", "attributes:integer{} bufferView:integer"},
     {"KHR_lights_punctual", "light:integer lights:Light[]"},
@@ -93,6 +95,7 @@ constexpr ObjectType kObjects[] = {
     {"Variant", "name:string"},
     {"KHR_materials_volume",
      "attenuationColor:number[] attenuationDistance:number thicknessFactor:number"},
+    {"KHR_meshopt_compression", kMeshopt},
     {"KHR_node_visibility", "visible:boolean"},
     {"KHR_texture_transform", "offset:number[] rotation:number scale:number[] texCoord:integer"},
 };
