@@ -44,9 +44,7 @@ template <class T>
 void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
   if (array.empty()) return;
   auto gathered = longArray<T>(source.size());
-  forRanges(source.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) gathered[i] = array[source[i]];
-  });
+  forIndices(source.size(), 1, [&](size_t i) { gathered[i] = array[source[i]]; });
   array = std::move(gathered);
 }
 
@@ -88,15 +86,13 @@ dvec3 anyPerpendicular(const dvec3& n) {
 void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
   std::vector<uint32_t> bad;
   std::mutex adding;
-  forRanges(mesh.normals.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const dvec3 n = directionOrZero(linear * dvec3(mesh.normals[i]));
-      if (n != dvec3(0)) {
-        mesh.normals[i] = vec3(n);
-      } else {
-        const std::lock_guard lock(adding);
-        bad.push_back(uint32_t(i));
-      }
+  forIndices(mesh.normals.size(), 1, [&](size_t i) {
+    const dvec3 n = directionOrZero(linear * dvec3(mesh.normals[i]));
+    if (n != dvec3(0)) {
+      mesh.normals[i] = vec3(n);
+    } else {
+      const std::lock_guard lock(adding);
+      bad.push_back(uint32_t(i));
     }
   });
   if (bad.empty()) return;
@@ -111,9 +107,7 @@ void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
 
 template <class T, class Change>
 void forEach(std::vector<T>& array, const Change& change) {
-  forRanges(array.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) change(array[i]);
-  });
+  forIndices(array.size(), 1, [&](size_t i) { change(array[i]); });
 }
 
 }  // namespace
@@ -142,13 +136,11 @@ void dropUnusedVertices(Mesh& mesh) {
 void makeFlat(Mesh& mesh) {
   const size_t count = mesh.triangles.size();
   auto source = longArray<uint32_t>(3 * count);
-  forRanges(count, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      Triangle& t = mesh.triangles[i];
-      const Triangle own(3 * i, 3 * i + 1, 3 * i + 2);
-      for (int k = 0; k < 3; ++k) source[own[k]] = t[k];
-      t = own;
-    }
+  forIndices(count, 1, [&](size_t i) {
+    Triangle& t = mesh.triangles[i];
+    const Triangle own(3 * i, 3 * i + 1, 3 * i + 2);
+    for (int k = 0; k < 3; ++k) source[own[k]] = t[k];
+    t = own;
   });
   gatherVertices(mesh, source);
   mesh.normals = longArray<vec3>(3 * count);
@@ -160,13 +152,11 @@ void makeFlat(Mesh& mesh) {
 void repairNormals(Mesh& mesh) { placeNormals(mesh, glm::dmat3(1)); }
 
 void repairTangents(Mesh& mesh) {
-  forRanges(mesh.tangents.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const vec4& given = mesh.tangents[i];
-      dvec3 t = directionOrZero(dvec3(given));
-      if (t == dvec3(0)) t = anyPerpendicular(dvec3(mesh.normals[i]));
-      mesh.tangents[i] = vec4(vec3(t), given.w < 0 ? -1 : 1);
-    }
+  forIndices(mesh.tangents.size(), 1, [&](size_t i) {
+    const vec4& given = mesh.tangents[i];
+    dvec3 t = directionOrZero(dvec3(given));
+    if (t == dvec3(0)) t = anyPerpendicular(dvec3(mesh.normals[i]));
+    mesh.tangents[i] = vec4(vec3(t), given.w < 0 ? -1 : 1);
   });
 }
 
@@ -271,10 +261,9 @@ void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
     copy[i] = uint32_t(source.size());
     source.push_back(i);
   }
-  forRanges(mesh.triangles.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      if (windings[i] == kCounter)
-        for (int k = 0; k < 3; ++k) mesh.triangles[i][k] = copy[mesh.triangles[i][k]];
+  forIndices(mesh.triangles.size(), 1, [&](size_t i) {
+    if (windings[i] == kCounter)
+      for (int k = 0; k < 3; ++k) mesh.triangles[i][k] = copy[mesh.triangles[i][k]];
   });
   gatherVertices(mesh, source);
 

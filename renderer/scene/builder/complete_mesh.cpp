@@ -52,10 +52,8 @@ void completeTangents(const Material& material, Mesh& mesh) {
   if (!mesh.tangents.empty()) return repairTangents(mesh);
   auto uv = longArray<vec2>(mesh.positions.size());
   if (hasSet(mesh, slot->uvSet))
-    forRanges(uv.size(), [&](size_t begin, size_t end) {
-      const std::vector<vec2>& set = mesh.uvs[size_t(slot->uvSet)];
-      for (size_t i = begin; i < end; ++i) uv[i] = slot->transform(set[i]);
-    });
+    forIndices(uv.size(), 1,
+               [&](size_t i) { uv[i] = slot->transform(mesh.uvs[size_t(slot->uvSet)][i]); });
   computeTangents(mesh, uv);
 }
 
