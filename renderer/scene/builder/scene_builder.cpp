@@ -53,7 +53,7 @@ void checkTexels(const TexelGrid& image) {
 
 // The ranges of a material's numbers (glTF 2.0 and its extensions).
 
-constexpr float kAny = 1e6f, kMost = std::numeric_limits<float>::max();
+constexpr float kMostOfOthers = 1e6f, kMostFloat = std::numeric_limits<float>::max();
 
 class MaterialCheck {
  public:
@@ -74,19 +74,19 @@ class MaterialCheck {
 
 void checkExtended(const MaterialCheck& check, const ExtendedMaterial& m) {
   check.number("transmission", m.transmission, 0, 1);
-  check.color("attenuation", m.attenuation, kMost);
+  check.color("attenuation", m.attenuation, kMostFloat);
   check.number("dispersion", m.dispersion, 0, 1e3f);
   check.number("clearcoat", m.clearcoat, 0, 1);
   check.number("clearcoatRoughness", m.clearcoatRoughness, 0, 1);
-  check.number("clearcoatNormalScale", m.clearcoatNormalScale, -kAny, kAny);
+  check.number("clearcoatNormalScale", m.clearcoatNormalScale, -kMostOfOthers, kMostOfOthers);
   check.color("sheenColor", m.sheenColor, 1);
   check.number("sheenRoughness", m.sheenRoughness, 0, 1);
   check.number("anisotropy", m.anisotropy, 0, 1);
-  check.number("anisotropyRotation", m.anisotropyRotation, -kAny, kAny);
+  check.number("anisotropyRotation", m.anisotropyRotation, -kMostOfOthers, kMostOfOthers);
   check.number("iridescence", m.iridescence, 0, 1);
   check.number("filmIor", m.filmIor, 1, 1e3f);
-  check.number("filmMinThickness", m.filmMinThickness, 0, kAny);
-  check.number("filmMaxThickness", m.filmMaxThickness, 0, kAny);
+  check.number("filmMinThickness", m.filmMinThickness, 0, kMostOfOthers);
+  check.number("filmMaxThickness", m.filmMaxThickness, 0, kMostOfOthers);
 }
 
 void checkSlots(const Material& material, size_t textures) {
@@ -113,12 +113,12 @@ void checkMaterial(const Material& m, size_t textures) {
   check.number("alpha of baseColor", m.baseColor.w, 0, 1);
   check.number("metallic", m.metallic, 0, 1);
   check.number("roughness", m.roughness, 0, 1);
-  check.color("emission", m.emission, kMost);
-  if (m.ior != 0) check.number("ior", m.ior, 1, kAny);
+  check.color("emission", m.emission, kMostFloat);
+  if (m.ior != 0) check.number("ior", m.ior, 1, kMostOfOthers);
   check.number("specular", m.specular, 0, 1);
-  check.color("specularColor", m.specularColor, kMost);
-  check.number("normalScale", m.normalScale, -kAny, kAny);
-  check.number("alphaCutoff", m.alphaCutoff, 0, kAny);
+  check.color("specularColor", m.specularColor, kMostFloat);
+  check.number("normalScale", m.normalScale, -kMostOfOthers, kMostOfOthers);
+  check.number("alphaCutoff", m.alphaCutoff, 0, kMostOfOthers);
   if (m.extended) checkExtended(check, *m.extended);
   checkSlots(m, textures);
 }
