@@ -15,15 +15,6 @@ namespace chromeball {
 // `scene` or one of `later` lacks.
 std::vector<std::string> addMotion(Scene& scene, const std::vector<Scene>& later);
 
-// The same parts and lamps in scenes of the same models at several times.
-
-// For each instance of `scene`, the same part in `other`; null if the node has other parts there,
-// or ones that are turned inside out.
-std::vector<const Instance*> partsIn(const Scene& other, const Scene& scene);
-
-// For each lamp of `scene`, the lamp of the same node in `other`; null if there is none.
-std::vector<const PunctualLight*> lampsIn(const Scene& other, const Scene& scene);
-
 // How well keys follow the motion that they are taken from.
 
 class MotionError {

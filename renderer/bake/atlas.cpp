@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "base/error.h"
 
@@ -22,15 +23,7 @@ double leastDensity(const std::vector<Chart>& charts) {
   return longest > 0 ? 1 / longest : 1;
 }
 
-// The smallest page that has room for all charts at the least density; nullopt if none has.
-std::optional<int> leastPage(const std::vector<Chart>& charts, int padding) {
-  for (int size = 4; size <= kMaxPage; size *= 2)
-    if (packAtlas(charts, size, padding, leastDensity(charts))) return size;
-  return {};
-}
-
-}  // namespace
-
+// The places at a given density, in rows by height; nullopt if they do not fit on the page.
 std::optional<Atlas> packAtlas(const std::vector<Chart>& charts, int size, int padding,
                                double density) {
   Atlas atlas{size, padding, density, std::vector<AtlasPlace>(charts.size())};
@@ -55,6 +48,15 @@ std::optional<Atlas> packAtlas(const std::vector<Chart>& charts, int size, int p
   }
   return atlas;
 }
+
+// The smallest page that has room for all charts at the least density; nullopt if none has.
+std::optional<int> leastPage(const std::vector<Chart>& charts, int padding) {
+  for (int size = 4; size <= kMaxPage; size *= 2)
+    if (packAtlas(charts, size, padding, leastDensity(charts))) return size;
+  return {};
+}
+
+}  // namespace
 
 Atlas fitAtlas(const std::vector<Chart>& charts, int size, int padding,
                const std::string& location) {

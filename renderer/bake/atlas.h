@@ -2,7 +2,6 @@
 // The places of charts on a square page of texels.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "bake/charts.h"
@@ -28,15 +27,7 @@ struct Atlas {
     const AtlasPlace& place = places[chart];
     return glm::dvec2(place.x + padding, place.y + padding) + 0.5 + density * point;
   }
-  glm::dvec2 toChart(size_t chart, const glm::dvec2& texel) const {
-    const AtlasPlace& place = places[chart];
-    return (texel - glm::dvec2(place.x + padding, place.y + padding) - 0.5) / density;
-  }
 };
-
-// The places at a given density, in rows by height; nullopt if they do not fit on the page.
-std::optional<Atlas> packAtlas(const std::vector<Chart>& charts, int size, int padding,
-                               double density);
 
 // The highest density, up to a factor of 1.001, of a page of a given size. Throws InputError, begun
 // by `location`, if the charts do not fit at any density.

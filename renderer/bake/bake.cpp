@@ -13,10 +13,11 @@ namespace chromeball {
 namespace {
 
 constexpr int kProbingRays = 16;
+constexpr uint64_t kProbingBlock = ~0ull;  // of the sampler, for isBuried()
+constexpr uint32_t kMaxTable = 4096;       // points; more samples take another randomisation
 
 bool hidesItsInside(const Material& material) {
-  return material.alphaMode == AlphaMode::Opaque &&
-         !(material.extended && material.extended->transmission > 0);
+  return material.alphaMode == AlphaMode::Opaque && !material.transmits();
 }
 
 // A ray that ends at the surface, as if a camera above it looked down along the normal.
@@ -87,65 +88,66 @@ bool PointLight::isBuried(const BakePoint& point, const Surface& surface,
   return 2 * behind > kProbingRays;
 }
 
-namespace {
+PointSamples::PointSamples(const PointLight& light, const std::vector<PlacedMesh>& meshes,
+                           const std::vector<BakePoint>& points, uint32_t samples, int maxDepth,
+                           uint64_t seed)
+    : light_(light),
+      meshes_(meshes),
+      points_(points),
+      seed_(seed),
+      table_(std::bit_ceil(std::clamp(samples, 16u, kMaxTable)), dimension::tabulated(maxDepth + 1),
+             seed) {}
 
-constexpr uint32_t kMaxTable = 4096;       // points; more samples take another randomisation
-constexpr uint64_t kProbingBlock = ~0ull;  // of the sampler, for isBuried()
-
-struct Worker {
-  PathContext context;
-  InvalidSamples invalid;
-};
-
-class Baker {
- public:
-  Baker(const PathTracer& tracer, const std::vector<PlacedMesh>& meshes,
-        const BakeSettings& settings)
-      : light_(tracer, settings.what, settings.distance),
-        meshes_(meshes),
-        settings_(settings),
-        table_(std::bit_ceil(std::clamp((settings.samples + 1) / 2, 16u, kMaxTable)),
-               dimension::tabulated(settings.maxDepth + 1), settings.seed) {}
-
-  Worker makeWorker() const {
-    return {{.sampler = PixelSampler(table_, settings_.seed), .clamp = Clamp()}, {}};
-  }
-
-  PointResult bake(const BakePoint& point, Worker& worker) const {
-    PointResult result;
-    PathContext& context = worker.context;
-    const Surface surface = light_.surfaceAt(point);
-    context.sampler.startPixel(point.x, point.y, kProbingBlock);
-    result.buried = light_.isBuried(point, surface, meshes_, context);
-    if (result.buried) return result;
-    for (uint32_t half = 0; half < 2; ++half) {
-      glm::dvec3 sum(0);
-      uint32_t valid = 0;
-      for (uint32_t i = 0; i < (settings_.samples + 1 - half) / 2; ++i) {
-        if (i % table_.size() == 0)
-          context.sampler.startPixel(point.x, point.y, 2 * uint64_t(i / table_.size()) + half);
-        context.sampler.startSample(i % table_.size());
-        const Rgb found = light_.sample(point, surface, context);
-        if (const auto defect = defectOf(found, false)) {
-          worker.invalid.add(*defect, int(point.x), int(point.y));
-          continue;
-        }
-        sum += glm::dvec3(found);
-        ++valid;
-      }
-      if (valid > 0) result.halves[half] = Rgb(sum / double(valid));
+PointSamples::Totals PointSamples::forPoints(const Estimate& estimate,
+                                             const Progress& progress) const {
+  Totals totals{std::vector<uint8_t>(points_.size()), {}, {}};
+  PerThread<PointWorker> workers([&] {
+    return PointWorker{{.sampler = PixelSampler(table_, seed_), .clamp = Clamp()}, {}};
+  });
+  std::atomic<size_t> finished = 0;
+  std::mutex reporting;
+  constexpr size_t kGrain = 16;
+  parallelRanges(points_.size(), kGrain, [&](size_t begin, size_t end) {
+    PointWorker& worker = workers.local();
+    for (size_t i = begin; i < end; ++i) {
+      const BakePoint& point = points_[i];
+      const Surface surface = light_.surfaceAt(point);
+      worker.context.sampler.startPixel(point.x, point.y, kProbingBlock);
+      totals.isBuried[i] = light_.isBuried(point, surface, meshes_, worker.context);
+      if (!totals.isBuried[i]) estimate(i, surface, worker);
     }
-    return result;
+    const size_t count = finished += end - begin;
+    if (std::unique_lock lock(reporting, std::try_to_lock); lock)
+      progress(double(count) / double(points_.size()));
+  });
+  workers.forEach([&](const PointWorker& worker) {
+    totals.invalid.add(worker.invalid);
+    totals.rays.add(worker.context.counts);
+  });
+  light_.scene().checkTexels();
+  return totals;
+}
+
+uint32_t PointSamples::forSamples(size_t index, uint32_t count, uint32_t part, uint32_t parts,
+                                  PointWorker& worker, const std::function<Rgb()>& sample,
+                                  const std::function<void(const Rgb&)>& add) const {
+  const BakePoint& point = points_[index];
+  PixelSampler& sampler = worker.context.sampler;
+  uint32_t valid = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    if (i % table_.size() == 0)
+      sampler.startPixel(point.x, point.y, parts * uint64_t(i / table_.size()) + part);
+    sampler.startSample(i % table_.size());
+    const Rgb found = sample();
+    if (const auto defect = defectOf(found, false)) {
+      worker.invalid.add(*defect, int(point.x), int(point.y));
+      continue;
+    }
+    add(found);
+    ++valid;
   }
-
- private:
-  PointLight light_;
-  const std::vector<PlacedMesh>& meshes_;
-  const BakeSettings& settings_;
-  SobolTable table_;
-};
-
-}  // namespace
+  return valid;
+}
 
 BakeResult bake(const World& world, const LightSource& lighting,
                 const std::vector<PlacedMesh>& meshes, const std::vector<BakePoint>& points,
@@ -153,25 +155,25 @@ BakeResult bake(const World& world, const LightSource& lighting,
   const PathTracer tracer(
       world, lighting,
       {.mis = settings.mis, .maxDepth = settings.maxDepth, .estimateDepthCut = false});
-  const Baker baker(tracer, meshes, settings);
+  const PointLight light(tracer, settings.what, settings.distance);
+  const PointSamples all(light, meshes, points, (settings.samples + 1) / 2, settings.maxDepth,
+                         settings.seed);
   BakeResult result;
   result.points.resize(points.size());
-  PerThread<Worker> workers([&] { return baker.makeWorker(); });
-  std::atomic<size_t> finished = 0;
-  std::mutex reporting;
-  constexpr size_t kGrain = 64;
-  parallelRanges(points.size(), kGrain, [&](size_t begin, size_t end) {
-    Worker& worker = workers.local();
-    for (size_t i = begin; i < end; ++i) result.points[i] = baker.bake(points[i], worker);
-    const size_t count = finished += end - begin;
-    if (std::unique_lock lock(reporting, std::try_to_lock); lock)
-      progress(double(count) / double(points.size()));
-  });
-  workers.forEach([&](const Worker& worker) {
-    result.invalid.add(worker.invalid);
-    result.rays.add(worker.context.counts);
-  });
-  world.scene.checkTexels();
+  const auto estimate = [&](size_t i, const Surface& surface, PointWorker& worker) {
+    for (uint32_t half = 0; half < 2; ++half) {
+      glm::dvec3 sum(0);
+      const uint32_t valid = all.forSamples(
+          i, (settings.samples + 1 - half) / 2, half, 2, worker,
+          [&] { return light.sample(points[i], surface, worker.context); },
+          [&](const Rgb& found) { sum += glm::dvec3(found); });
+      if (valid > 0) result.points[i].halves[half] = Rgb(sum / double(valid));
+    }
+  };
+  const PointSamples::Totals totals = all.forPoints(estimate, progress);
+  for (size_t i = 0; i < points.size(); ++i) result.points[i].buried = totals.isBuried[i];
+  result.invalid = totals.invalid;
+  result.rays = totals.rays;
   return result;
 }
 

@@ -2,6 +2,8 @@
 // Estimates the light at many points, on all threads.
 #pragma once
 
+#include <functional>
+
 #include "bake/bake_points.h"
 #include "base/progress.h"
 #include "film/film.h"
@@ -48,6 +50,44 @@ class PointLight {
   float distance_;
 };
 
+// The scratch of a thread.
+struct PointWorker {
+  PathContext context;
+  InvalidSamples invalid;  // at the points' x and y
+};
+
+// The samples of all points, on all threads. Results depend on points, samples and seed only.
+class PointSamples {
+ public:
+  // All arguments must outlive this. `meshes`: all instances of the world. `samples`: of a point,
+  // or of each independent part of its samples.
+  PointSamples(const PointLight& light, const std::vector<PlacedMesh>& meshes,
+               const std::vector<BakePoint>& points, uint32_t samples, int maxDepth, uint64_t seed);
+
+  struct Totals {
+    std::vector<uint8_t> isBuried;  // by point: PointLight::isBuried()
+    InvalidSamples invalid;
+    RayCounts rays;
+  };
+  // Calls estimate(index, surface, worker), which may call forSamples(), for each point that is not
+  // buried.
+  using Estimate = std::function<void(size_t, const Surface&, PointWorker&)>;
+  Totals forPoints(const Estimate& estimate, const Progress& progress) const;
+
+  // Calls add(sample()) `count` times, with the random numbers of part `part` of `parts`, except
+  // for invalid samples. Returns how many are valid.
+  uint32_t forSamples(size_t point, uint32_t count, uint32_t part, uint32_t parts,
+                      PointWorker& worker, const std::function<Rgb()>& sample,
+                      const std::function<void(const Rgb&)>& add) const;
+
+ private:
+  const PointLight& light_;
+  const std::vector<PlacedMesh>& meshes_;
+  const std::vector<BakePoint>& points_;
+  uint64_t seed_;
+  SobolTable table_;
+};
+
 struct BakeSettings {
   BakedLight what = BakedLight::Irradiance;
   uint32_t samples = 256;  // of each point, >= 2
@@ -70,7 +110,7 @@ struct BakeResult {
   RayCounts rays;
 };
 
-// `meshes`: all instances of the world. The result depends on points, samples and seed only.
+// `meshes`: all instances of the world.
 BakeResult bake(const World& world, const LightSource& lighting,
                 const std::vector<PlacedMesh>& meshes, const std::vector<BakePoint>& points,
                 const BakeSettings& settings, const Progress& progress);

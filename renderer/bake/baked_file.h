@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "bake/bake.h"
 #include "bake/gltf_document.h"

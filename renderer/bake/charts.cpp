@@ -4,14 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
-
-#include "math/vec.h"
+#include <unordered_map>
 
 namespace chromeball {
 namespace {
-
-double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
 struct Interval {
   double min, max;
@@ -34,8 +30,6 @@ bool separates(const FlatTriangle& a, const FlatTriangle& b, double tolerance) {
   }
   return false;
 }
-
-uint64_t cellKey(int64_t x, int64_t y) { return uint64_t(x) << 32 ^ uint64_t(uint32_t(y)); }
 
 }  // namespace
 
@@ -65,57 +59,75 @@ NearestPoint nearestPoint(const FlatTriangle& t, const glm::dvec2& p) {
   return nearest;
 }
 
-bool FlatTriangleSet::Range::isLarge() const {
-  constexpr double kMaxCells = 1024;
-  return double(x1 - x0 + 1) * double(y1 - y0 + 1) > kMaxCells;
-}
-
-FlatTriangleSet::Range FlatTriangleSet::cellsOf(const FlatTriangle& t) const {
-  const Interval x = projected(t, {1, 0}), y = projected(t, {0, 1});
-  constexpr double kMost = 1e9;  // of cells from the origin; those beyond share cells
-  const auto cell = [&](double at) {
-    return int64_t(std::clamp(std::floor(at / cell_), -kMost, kMost));
-  };
-  return {cell(x.min), cell(y.min), cell(x.max), cell(y.max)};
-}
-
-bool FlatTriangleSet::overlapsOneOf(const FlatTriangle& t,
-                                    const std::vector<uint32_t>& indices) const {
-  constexpr double kTolerance = 1e-5;  // of the smaller one's extent
-  const auto extent = [](const FlatTriangle& f) {
-    const Interval x = projected(f, {1, 0}), y = projected(f, {0, 1});
-    return std::max(x.max - x.min, y.max - y.min);
-  };
-  return std::ranges::any_of(indices, [&](uint32_t i) {
-    const FlatTriangle& other = triangles_[i];
-    return overlap(t, other, kTolerance * std::min(extent(t), extent(other)));
-  });
-}
-
-bool FlatTriangleSet::overlaps(const FlatTriangle& t) const {
-  if (overlapsOneOf(t, large_)) return true;
-  const Range range = cellsOf(t);
-  if (range.isLarge())
-    return std::ranges::any_of(cells_,
-                               [&](const auto& cell) { return overlapsOneOf(t, cell.second); });
-  for (int64_t y = range.y0; y <= range.y1; ++y)
-    for (int64_t x = range.x0; x <= range.x1; ++x) {
-      const auto cell = cells_.find(cellKey(x, y));
-      if (cell != cells_.end() && overlapsOneOf(t, cell->second)) return true;
-    }
-  return false;
-}
-
-void FlatTriangleSet::add(const FlatTriangle& t) {
-  const uint32_t index = uint32_t(triangles_.size());
-  triangles_.push_back(t);
-  const Range range = cellsOf(t);
-  if (range.isLarge()) return large_.push_back(index);
-  for (int64_t y = range.y0; y <= range.y1; ++y)
-    for (int64_t x = range.x0; x <= range.x1; ++x) cells_[cellKey(x, y)].push_back(index);
-}
-
 namespace {
+
+// Finds overlaps with triangles added before, by a grid.
+class FlatTriangleSet {
+ public:
+  // `cell`: about the extent of most triangles.
+  explicit FlatTriangleSet(double cell) : cell_(cell) {}
+
+  bool overlaps(const FlatTriangle& t) const {
+    if (overlapsOneOf(t, large_)) return true;
+    const Range range = cellsOf(t);
+    if (range.isLarge())
+      return std::ranges::any_of(cells_,
+                                 [&](const auto& cell) { return overlapsOneOf(t, cell.second); });
+    for (int64_t y = range.y0; y <= range.y1; ++y)
+      for (int64_t x = range.x0; x <= range.x1; ++x) {
+        const auto cell = cells_.find(key(x, y));
+        if (cell != cells_.end() && overlapsOneOf(t, cell->second)) return true;
+      }
+    return false;
+  }
+
+  void add(const FlatTriangle& t) {
+    const uint32_t index = uint32_t(triangles_.size());
+    triangles_.push_back(t);
+    const Range range = cellsOf(t);
+    if (range.isLarge()) return large_.push_back(index);
+    for (int64_t y = range.y0; y <= range.y1; ++y)
+      for (int64_t x = range.x0; x <= range.x1; ++x) cells_[key(x, y)].push_back(index);
+  }
+
+ private:
+  struct Range {
+    int64_t x0, y0, x1, y1;
+
+    bool isLarge() const {  // of too many cells
+      constexpr double kMaxCells = 1024;
+      return double(x1 - x0 + 1) * double(y1 - y0 + 1) > kMaxCells;
+    }
+  };
+
+  static uint64_t key(int64_t x, int64_t y) { return uint64_t(x) << 32 ^ uint64_t(uint32_t(y)); }
+
+  Range cellsOf(const FlatTriangle& t) const {
+    const Interval x = projected(t, {1, 0}), y = projected(t, {0, 1});
+    constexpr double kMost = 1e9;  // of cells from the origin; those beyond share cells
+    const auto cell = [&](double at) {
+      return int64_t(std::clamp(std::floor(at / cell_), -kMost, kMost));
+    };
+    return {cell(x.min), cell(y.min), cell(x.max), cell(y.max)};
+  }
+
+  bool overlapsOneOf(const FlatTriangle& t, const std::vector<uint32_t>& indices) const {
+    constexpr double kTolerance = 1e-5;  // of the smaller one's extent
+    const auto extent = [](const FlatTriangle& f) {
+      const Interval x = projected(f, {1, 0}), y = projected(f, {0, 1});
+      return std::max(x.max - x.min, y.max - y.min);
+    };
+    return std::ranges::any_of(indices, [&](uint32_t i) {
+      const FlatTriangle& other = triangles_[i];
+      return overlap(t, other, kTolerance * std::min(extent(t), extent(other)));
+    });
+  }
+
+  double cell_;
+  std::vector<FlatTriangle> triangles_;
+  std::vector<uint32_t> large_;  // in no cell
+  std::unordered_map<uint64_t, std::vector<uint32_t>> cells_;
+};
 
 // Largest angles. kChartAngle: between a triangle's normal and the first triangle's, so that the
 // projection shrinks no direction to less than 0.77. kCreaseAngle: between the shading normals on

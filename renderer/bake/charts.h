@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "bake/placed_mesh.h"
@@ -12,7 +11,7 @@
 
 namespace chromeball {
 
-// Triangles of a plane: distance, overlap, and a set of triangles that do not overlap.
+// Triangles of a plane.
 
 using FlatTriangle = std::array<glm::dvec2, 3>;
 
@@ -27,30 +26,6 @@ struct NearestPoint {
 
 // The point of a triangle, which must have an area, that is nearest to p.
 NearestPoint nearestPoint(const FlatTriangle& t, const glm::dvec2& p);
-
-// Finds overlaps with triangles added before, by a grid.
-class FlatTriangleSet {
- public:
-  // `cell`: about the extent of most triangles.
-  explicit FlatTriangleSet(double cell) : cell_(cell) {}
-
-  bool overlaps(const FlatTriangle& t) const;
-  void add(const FlatTriangle& t);
-
- private:
-  struct Range {
-    int64_t x0, y0, x1, y1;
-
-    bool isLarge() const;  // of too many cells
-  };
-  Range cellsOf(const FlatTriangle& t) const;
-  bool overlapsOneOf(const FlatTriangle& t, const std::vector<uint32_t>& indices) const;
-
-  double cell_;
-  std::vector<FlatTriangle> triangles_;
-  std::vector<uint32_t> large_;  // in no cell
-  std::unordered_map<uint64_t, std::vector<uint32_t>> cells_;
-};
 
 // The orthogonal projection to a plane, in metres, from (0, 0) to `size`; no two triangles overlap.
 struct Chart {

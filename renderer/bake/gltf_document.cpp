@@ -61,30 +61,24 @@ int GltfDocument::addView(std::span<const uint8_t> bytes, int target) {
   return add("bufferViews", std::move(view));
 }
 
-template <class T>
-int GltfDocument::addAccessor(const std::vector<T>& elements, const char* type) {
-  return add("accessors", {{"bufferView", addView(bytesOf(elements), kArrayBuffer)},
-                           {"componentType", kFloat},
-                           {"count", elements.size()},
-                           {"type", type}});
+template <int N>
+int GltfDocument::accessor(const std::vector<glm::vec<N, float>>& elements) {
+  Json json = {{"bufferView", addView(bytesOf(elements), kArrayBuffer)},
+               {"componentType", kFloat},
+               {"count", elements.size()},
+               {"type", "VEC" + std::to_string(N)}};
+  if constexpr (N == 3) {
+    vec3 low(INFINITY), high(-INFINITY);
+    for (const vec3& v : elements) low = glm::min(low, v), high = glm::max(high, v);
+    json["min"] = {low.x, low.y, low.z};
+    json["max"] = {high.x, high.y, high.z};
+  }
+  return add("accessors", std::move(json));
 }
 
-int GltfDocument::accessor(const std::vector<vec2>& elements) {
-  return addAccessor(elements, "VEC2");
-}
-
-int GltfDocument::accessor(const std::vector<vec4>& elements) {
-  return addAccessor(elements, "VEC4");
-}
-
-int GltfDocument::accessor(const std::vector<vec3>& elements) {
-  const int index = addAccessor(elements, "VEC3");
-  vec3 low(INFINITY), high(-INFINITY);
-  for (const vec3& v : elements) low = glm::min(low, v), high = glm::max(high, v);
-  root["accessors"].back()["min"] = {low.x, low.y, low.z};
-  root["accessors"].back()["max"] = {high.x, high.y, high.z};
-  return index;
-}
+template int GltfDocument::accessor(const std::vector<vec2>&);
+template int GltfDocument::accessor(const std::vector<vec3>&);
+template int GltfDocument::accessor(const std::vector<vec4>&);
 
 int GltfDocument::indices(const std::vector<glm::uvec3>& triangles) {
   return add("accessors", {{"bufferView", addView(bytesOf(triangles), kElementBuffer)},

@@ -24,9 +24,8 @@ class GltfDocument {
   int add(const char* array, Json element);
 
   // Accessors of vertices, and of indices.
-  int accessor(const std::vector<vec2>& elements);
-  int accessor(const std::vector<vec3>& elements);  // with bounds, which positions need
-  int accessor(const std::vector<vec4>& elements);
+  template <int N>  // 2 to 4; for 3 with bounds, which positions need
+  int accessor(const std::vector<glm::vec<N, float>>& elements);
   int indices(const std::vector<glm::uvec3>& triangles);
 
   int addPng(std::span<const uint8_t> png, const std::string& name);
@@ -40,8 +39,6 @@ class GltfDocument {
 
  private:
   int addView(std::span<const uint8_t> bytes, int target = 0);
-  template <class T>
-  int addAccessor(const std::vector<T>& elements, const char* type);
 
   std::vector<uint8_t> bytes_;
 };

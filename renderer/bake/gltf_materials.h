@@ -21,7 +21,7 @@ class GltfMaterials {
       : scene_(scene), document_(document), movesSets_(movesSets) {}
 
   // The core's metallic-roughness material, with index of refraction, specular and the strength of
-  // emission; other extensions are left out (leavesOut()).
+  // emission; other extensions are left out.
   Json lit(const Material& material);
   // Shows the base colour as it is: its texture and factor, times vertex colours.
   Json unlit(const Material& material);
@@ -29,8 +29,6 @@ class GltfMaterials {
   Json lightmapped(const Material& material, int texture);
   // Shows vertex colours as they are.
   Json coloured(const Material& material);
-
-  static bool leavesOut(const Material& material) { return material.extended.has_value(); }
 
   // A texture of a PNG that is interpolated and does not repeat.
   int addPage(std::span<const uint8_t> png, const std::string& name);

@@ -13,15 +13,13 @@ Lightmap makeLightmap(const PointLight& what, const std::vector<BakePoint>& poin
   const int size = atlas.size;
   Lightmap map{Image(size, size, 3), Image(size, size, 4)};
   std::vector<uint8_t> isBaked(size_t(size) * size_t(size));
-  forRanges(points.size(), 100, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      if (baked.points[i].buried) continue;
-      const int x = int(points[i].x), y = int(points[i].y);
-      isBaked[size_t(y) * size_t(size) + size_t(x)] = 1;
-      map.light.setRgb(x, y, light[i]);
-      const vec4 shown = shownColor(what, points[i], light[i]);
-      for (int c = 0; c < 4; ++c) map.shown.at(x, y)[c] = shown[c];
-    }
+  forIndices(points.size(), 100, [&](size_t i) {
+    if (baked.points[i].buried) return;
+    const int x = int(points[i].x), y = int(points[i].y);
+    isBaked[size_t(y) * size_t(size) + size_t(x)] = 1;
+    map.light.setRgb(x, y, light[i]);
+    const vec4 shown = shownColor(what, points[i], light[i]);
+    for (int c = 0; c < 4; ++c) map.shown.at(x, y)[c] = shown[c];
   });
   for (const BakePoint& point : points)
     if (countsForScale(what.scene(), point.instance))
@@ -79,9 +77,7 @@ class TexelFilter {
       for (size_t half = 0; half < 2; ++half)
         scaled_[i][half] = scale * baked.points[i].halves[half];
     variances_.resize(points.size());
-    forRanges(points.size(), 25, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) variances_[i] = varianceAround(i);
-    });
+    forIndices(points.size(), 25, [&](size_t i) { variances_[i] = varianceAround(i); });
   }
 
   Rgb filtered(size_t i) const {
@@ -171,9 +167,8 @@ std::vector<Rgb> filteredLight(const std::vector<BakePoint>& points, const BakeR
                                int size) {
   const TexelFilter filter(points, baked, size);
   std::vector<Rgb> light(points.size());
-  forRanges(points.size(), 1000, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      if (!baked.points[i].buried) light[i] = filter.filtered(i);
+  forIndices(points.size(), 1000, [&](size_t i) {
+    if (!baked.points[i].buried) light[i] = filter.filtered(i);
   });
   return light;
 }

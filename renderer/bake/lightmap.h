@@ -24,16 +24,12 @@ std::vector<BakedGeometry> lightmappedGeometry(const std::vector<PlacedMesh>& me
                                                const std::vector<Chart>& charts,
                                                const Atlas& atlas);
 
-// Removes noise from the texels of charts.
-
 // The light of each point, filtered by nonlocal means (Rousselle et al. 2012): each half of the
 // samples is averaged over the texels of the same chart whose surroundings are alike in the other
 // half, up to the noise of both. Constant light stays the same to the last bit. Buried points take
 // no part. `points`: the texels of a page of this size.
 std::vector<Rgb> filteredLight(const std::vector<BakePoint>& points, const BakeResult& baked,
                                int size);
-
-// Fills the texels of a page that have no light of their own.
 
 // Within the place of each chart, fills texels ring by ring with the mean of their filled
 // neighbours, so that filtering across the edge of a chart, and around points inside of bodies,

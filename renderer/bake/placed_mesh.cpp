@@ -84,7 +84,7 @@ PlacedMesh::PlacedMesh(const Scene& scene, int index) : instance(index) {
   const Instance& placed = scene.instances[size_t(index)];
   mesh = &scene.meshes[size_t(placed.mesh)];
   const glm::mat3 linear = placed.toWorld ? placed.toWorld->linear : glm::mat3(1);
-  mirrored = glm::determinant(linear) < 0;
+  mirrored = placed.mirrors();
   for (const vec3& p : mesh->positions) positions.push_back(placed.point(p));
   // Normals are transformed by the cofactor matrix.
   const glm::mat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),

@@ -25,8 +25,6 @@ float brightestOf(const PointLight& what, const std::vector<BakedGeometry>& geom
 // Whether a surface's colours are all that it shows: its texture does not come on top.
 bool showsWhole(BakedLight what, const Material& material);
 
-// The geometry that the points of vertices make.
-
 // The geometry of each instance: its vertices, in the order of vertexPoints(), and the triangles
 // between them.
 std::vector<BakedGeometry> vertexGeometry(const std::vector<PlacedMesh>& meshes,

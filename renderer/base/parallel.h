@@ -63,12 +63,18 @@ void forRanges(size_t count, const Body& body) {
   forRanges(count, 1, body);
 }
 
+// Calls body(i) for each i below `count`; each takes as long as so many elements.
+template <class Body>
+void forIndices(size_t count, size_t elements, const Body& body) {
+  forRanges(count, elements, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
 // Calls row(y) for each row of an image; `work`: the work for a pixel, as a number of elements.
 template <class Row>
 void forRows(int width, int height, size_t work, const Row& row) {
-  forRanges(size_t(height), work * size_t(width), [&](size_t begin, size_t end) {
-    for (size_t y = begin; y < end; ++y) row(int(y));
-  });
+  forIndices(size_t(height), work * size_t(width), [&](size_t y) { row(int(y)); });
 }
 
 template <class Row>

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "composite/layers.h"
-
 namespace chromeball {
 namespace {
 

@@ -29,8 +29,6 @@ inline std::vector<RayMask> rayMasks(const ObjectMask& isObject) {
   return masks;
 }
 
-// Path tracing with and without the synthetic objects.
-
 // Path tracers of both worlds of a composite. The camera does not see the probe, because the plate
 // is the background.
 struct CompositeWorlds {

@@ -2,7 +2,6 @@
 // Additional layers of composites, besides the layers of film/aov.h.
 #pragma once
 
-#include <optional>
 #include <string_view>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/text.h"
 #include "scene/builder/scene_builder.h"
 #include "trace/ray.h"
 

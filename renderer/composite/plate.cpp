@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "image/image.h"
 #include "image/io/read_image.h"
 #include "math/cdf.h"
 #include "trace/accel.h"

@@ -10,8 +10,6 @@
 namespace chromeball {
 namespace {
 
-double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
-
 // Twice the area of the triangle; positive if counter-clockwise.
 double turn(const dvec2& a, const dvec2& b, const dvec2& c) { return cross(b - a, c - a); }
 

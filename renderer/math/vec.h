@@ -72,6 +72,7 @@ F luminance(const Lanes3<F>& c) {
   return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }
 inline float maxComponent(const Rgb& c) { return std::max(c.x, std::max(c.y, c.z)); }
+inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 // glm::abs branches on the sign of each component.
 inline vec3 absolute(const vec3& v) { return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}; }
 inline bool isBlack(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }

@@ -4,6 +4,14 @@
 namespace chromeball {
 namespace {
 
+// A smooth boundary that transmits light, without other layers.
+bool isClear(const Material& m) {
+  if (!m.extended || m.unlit || m.roughness != 0) return false;
+  const ExtendedMaterial& e = *m.extended;
+  return e.transmission > 0 && e.clearcoat == 0 && isBlack(e.sheenColor) && e.anisotropy == 0 &&
+         e.iridescence == 0;
+}
+
 // A factor, times a channel of a texture if there is one.
 float product(const Scene& scene, const Surface& s, float factor, const TextureSlot& slot,
               int channel) {
@@ -81,18 +89,6 @@ float coatTransmittance(const Scene& scene, const Instance& instance, const Surf
   const float c = 1 - std::min(std::fabs(glm::dot(p.clearcoatNormal, wo)), 1.0f), c2 = c * c;
   return 1 - p.clearcoat * (kCoatF0 + (1 - kCoatF0) * (c2 * c2 * c));
 }
-
-namespace {
-
-// A smooth boundary that transmits light, without other layers.
-bool isClear(const Material& m) {
-  if (!m.extended || m.unlit || m.roughness != 0) return false;
-  const ExtendedMaterial& e = *m.extended;
-  return e.transmission > 0 && e.clearcoat == 0 && isBlack(e.sheenColor) && e.anisotropy == 0 &&
-         e.iridescence == 0;
-}
-
-}  // namespace
 
 bool passesStraight(const Material& m) { return isClear(m) && m.extended->thinWalled; }
 

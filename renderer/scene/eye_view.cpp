@@ -91,8 +91,6 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
-
 void addInstance(const Scene& scene, const Instance& instance, const OutsideViews& empty,
                  OutsideViews& views) {
   constexpr size_t kGrain = 1 << 18;

@@ -23,8 +23,6 @@ Camera framingCameraAround(const Scene& scene, float aspectRatio);
 // The centre of the bounds that framingCamera() frames; 0 for a scene without triangles.
 vec3 centreOf(const Scene& scene);
 
-// Chooses a camera inside a room.
-
 // A camera inside the room that the instances form (indices into scene.instances); nullopt if they
 // do not form a room. They do if front faces of walls surround some free position on all sides
 // except for a window or a door, floor and furniture are below it, none of the four sides of the

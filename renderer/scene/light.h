@@ -10,6 +10,7 @@
 
 #include "math/vec.h"
 #include "probe/sun_extraction.h"
+#include "scene/motion.h"
 
 namespace chromeball {
 
@@ -42,12 +43,23 @@ struct PunctualLight {
   int node = -1;          // index into Scene::nodeNames; -1: none
   std::shared_ptr<const std::vector<LampPose>> motion = nullptr;  // its keys; null: stands still
 
-  LampPose poseAt(float time) const;
+  LampPose poseAt(float time) const {
+    if (!motion) return {position, direction};
+    const KeySpan span = keysAround(motion->size(), time);
+    const LampPose &from = (*motion)[span.from], &to = (*motion)[span.to];
+    return {glm::mix(from.position, to.position, span.fraction),
+            glm::normalize(glm::mix(from.direction, to.direction, span.fraction))};
+  }
 
   bool operator==(const PunctualLight&) const = default;
 
-  // W/sr of a lamp with a power of 1 W: 1 / (integral of its falloff over all directions).
-  float intensityOfOneWatt() const;
+  // W/sr of a lamp with a power of 1 W: 1 / (integral of its falloff over all directions). A spot's
+  // falloff is 1 within the inner cone and ((cos - cosOuter) / (cosInner - cosOuter))^2 between the
+  // cones, whose cosines are 1 - innerCone and 1 - outerCone.
+  float intensityOfOneWatt() const {
+    if (kind == Kind::Point) return 1 / (4 * kPi);
+    return 1 / (2 * kPi * (innerCone + (outerCone - innerCone) / 3));
+  }
 };
 
 // 1 - cos of an angle in radians, so that narrow cones keep their digits.

@@ -40,16 +40,22 @@ namespace {
 
 using glm::dvec3;
 
-constexpr vec3 kUp(0, 1, 0);  // of vertices without a normal
-
 template <class T>
 void gather(std::vector<T>& array, const std::vector<uint32_t>& source) {
   if (array.empty()) return;
   auto gathered = longArray<T>(source.size());
-  forRanges(source.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) gathered[i] = array[source[i]];
-  });
+  forIndices(source.size(), 1, [&](size_t i) { gathered[i] = array[source[i]]; });
   array = std::move(gathered);
+}
+
+// Replaces all vertex arrays: the new vertex i is a copy of the old vertex source[i]. Does not
+// change the triangles.
+void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source) {
+  gather(mesh.positions, source);
+  gather(mesh.normals, source);
+  gather(mesh.tangents, source);
+  gather(mesh.colors, source);
+  for (auto& uv : mesh.uvs) gather(uv, source);
 }
 
 // The triangle's normal times twice its area.
@@ -58,13 +64,16 @@ dvec3 areaNormal(const Mesh& mesh, const Triangle& t) {
   return glm::cross(b - a, c - a);
 }
 
-// Returns false if the vector is zero or not finite. Double precision keeps the length of tiny and
-// huge float vectors from becoming 0 or infinite.
-bool normalize(dvec3& v) {
+// 0 if the vector is zero or not finite. Double precision keeps the length of tiny and huge float
+// vectors from becoming 0 or infinite.
+dvec3 directionOrZero(const dvec3& v) {
   const double length = glm::length(v);
-  if (!(length > 0) || !std::isfinite(length)) return false;
-  v /= length;
-  return true;
+  return length > 0 && std::isfinite(length) ? v / length : dvec3(0);
+}
+
+vec3 directionOrUp(const dvec3& v) {
+  const dvec3 direction = directionOrZero(v);
+  return direction == dvec3(0) ? vec3(0, 1, 0) : vec3(direction);
 }
 
 dvec3 anyPerpendicular(const dvec3& n) {
@@ -77,15 +86,13 @@ dvec3 anyPerpendicular(const dvec3& n) {
 void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
   std::vector<uint32_t> bad;
   std::mutex adding;
-  forRanges(mesh.normals.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      dvec3 n = linear * dvec3(mesh.normals[i]);
-      if (normalize(n)) {
-        mesh.normals[i] = vec3(n);
-      } else {
-        const std::lock_guard lock(adding);
-        bad.push_back(uint32_t(i));
-      }
+  forIndices(mesh.normals.size(), 1, [&](size_t i) {
+    const dvec3 n = directionOrZero(linear * dvec3(mesh.normals[i]));
+    if (n != dvec3(0)) {
+      mesh.normals[i] = vec3(n);
+    } else {
+      const std::lock_guard lock(adding);
+      bad.push_back(uint32_t(i));
     }
   });
   if (bad.empty()) return;
@@ -95,14 +102,12 @@ void placeNormals(Mesh& mesh, const glm::dmat3& linear) {
     const dvec3 n = areaNormal(mesh, t);
     for (int k = 0; k < 3; ++k) around[t[k]] += n;
   }
-  for (uint32_t i : bad) mesh.normals[i] = normalize(around[i]) ? vec3(around[i]) : kUp;
+  for (uint32_t i : bad) mesh.normals[i] = directionOrUp(around[i]);
 }
 
 template <class T, class Change>
 void forEach(std::vector<T>& array, const Change& change) {
-  forRanges(array.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) change(array[i]);
-  });
+  forIndices(array.size(), 1, [&](size_t i) { change(array[i]); });
 }
 
 }  // namespace
@@ -113,14 +118,6 @@ bool areFinite(const std::vector<vec3>& points) {
     if (!std::all_of(points.data() + begin, points.data() + end, isFinite)) all = false;
   });
   return all;
-}
-
-void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source) {
-  gather(mesh.positions, source);
-  gather(mesh.normals, source);
-  gather(mesh.tangents, source);
-  gather(mesh.colors, source);
-  for (auto& uv : mesh.uvs) gather(uv, source);
 }
 
 void dropUnusedVertices(Mesh& mesh) {
@@ -139,32 +136,27 @@ void dropUnusedVertices(Mesh& mesh) {
 void makeFlat(Mesh& mesh) {
   const size_t count = mesh.triangles.size();
   auto source = longArray<uint32_t>(3 * count);
-  forRanges(count, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      Triangle& t = mesh.triangles[i];
-      const Triangle own(3 * i, 3 * i + 1, 3 * i + 2);
-      for (int k = 0; k < 3; ++k) source[own[k]] = t[k];
-      t = own;
-    }
+  forIndices(count, 1, [&](size_t i) {
+    Triangle& t = mesh.triangles[i];
+    const Triangle own(3 * i, 3 * i + 1, 3 * i + 2);
+    for (int k = 0; k < 3; ++k) source[own[k]] = t[k];
+    t = own;
   });
   gatherVertices(mesh, source);
   mesh.normals = longArray<vec3>(3 * count);
   forEach(mesh.triangles, [&](const Triangle& t) {
-    dvec3 n = areaNormal(mesh, t);
-    mesh.normals[t.x] = mesh.normals[t.y] = mesh.normals[t.z] = normalize(n) ? vec3(n) : kUp;
+    mesh.normals[t.x] = mesh.normals[t.y] = mesh.normals[t.z] = directionOrUp(areaNormal(mesh, t));
   });
 }
 
 void repairNormals(Mesh& mesh) { placeNormals(mesh, glm::dmat3(1)); }
 
 void repairTangents(Mesh& mesh) {
-  forRanges(mesh.tangents.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const vec4& given = mesh.tangents[i];
-      dvec3 t(given);
-      if (!normalize(t)) t = anyPerpendicular(dvec3(mesh.normals[i]));
-      mesh.tangents[i] = vec4(vec3(t), given.w < 0 ? -1 : 1);
-    }
+  forIndices(mesh.tangents.size(), 1, [&](size_t i) {
+    const vec4& given = mesh.tangents[i];
+    dvec3 t = directionOrZero(dvec3(given));
+    if (t == dvec3(0)) t = anyPerpendicular(dvec3(mesh.normals[i]));
+    mesh.tangents[i] = vec4(vec3(t), given.w < 0 ? -1 : 1);
   });
 }
 
@@ -194,11 +186,6 @@ using glm::dvec3;
 // The orientation of UV space in a triangle. Unlike handedness, which also depends on the side that
 // a vertex normal is on, it is the same in all poses of a mesh: these are split alike.
 enum Winding { kClockwise = 0, kCounter = 1, kUndefined = 2 };  // as (x, y); no area
-
-dvec3 directionOrZero(const dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0 && std::isfinite(length) ? v / length : dvec3(0);
-}
 
 double cornerAngle(const std::array<dvec3, 3>& p, int k) {
   const dvec3 a = directionOrZero(p[(k + 1) % 3] - p[k]),
@@ -274,10 +261,9 @@ void computeTangents(Mesh& mesh, const std::vector<vec2>& uv) {
     copy[i] = uint32_t(source.size());
     source.push_back(i);
   }
-  forRanges(mesh.triangles.size(), [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      if (windings[i] == kCounter)
-        for (int k = 0; k < 3; ++k) mesh.triangles[i][k] = copy[mesh.triangles[i][k]];
+  forIndices(mesh.triangles.size(), 1, [&](size_t i) {
+    if (windings[i] == kCounter)
+      for (int k = 0; k < 3; ++k) mesh.triangles[i][k] = copy[mesh.triangles[i][k]];
   });
   gatherVertices(mesh, source);
 

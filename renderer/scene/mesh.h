@@ -2,7 +2,7 @@
 // Indexed triangles, and lists of them that scenes share.
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -73,10 +73,8 @@ class MeshList {
   Iterator end() const { return Iterator(meshes_.data() + meshes_.size()); }
 
   bool operator==(const MeshList& other) const {
-    if (size() != other.size()) return false;
-    for (size_t i = 0; i < size(); ++i)
-      if (meshes_[i] != other.meshes_[i] && *meshes_[i] != *other.meshes_[i]) return false;
-    return true;
+    return std::ranges::equal(meshes_, other.meshes_,
+                              [](const Shared& a, const Shared& b) { return a == b || *a == *b; });
   }
 
  private:
@@ -86,10 +84,6 @@ class MeshList {
 // Repairs and completes the vertex arrays of a mesh.
 
 bool areFinite(const std::vector<vec3>& points);
-
-// Replaces all vertex arrays: the new vertex i is a copy of the old vertex source[i]. Does not
-// change the triangles.
-void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& source);
 
 // Drops the vertices that no triangle uses.
 void dropUnusedVertices(Mesh& mesh);

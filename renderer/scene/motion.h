@@ -13,9 +13,8 @@
 
 namespace chromeball {
 
-// Affine transforms.
-
-// Row r of the matrix is (linear[0][r], linear[1][r], linear[2][r], translation[r]).
+// An affine transform. Row r of the matrix is (linear[0][r], linear[1][r], linear[2][r],
+// translation[r]).
 struct Transform {
   glm::mat3 linear{1};
   vec3 translation{0};

@@ -18,7 +18,7 @@ template <class Visit>
 void forTriangles(const Scene& scene, const Instance& instance, size_t begin, size_t end,
                   const Visit& visit) {
   const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
-  const bool mirrors = instance.toWorld && glm::determinant(instance.toWorld->linear) < 0;
+  const bool mirrors = instance.mirrors();
   for (size_t i = begin; i < end; ++i) {
     const Triangle& triangle = mesh.triangles[i];
     Corners c;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene.h"
 
-#include <algorithm>
 #include <iterator>
 #include <set>
 

@@ -29,6 +29,7 @@ struct Instance {
   std::shared_ptr<const InstanceMotion> motion = nullptr;
 
   vec3 point(const vec3& p) const { return toWorld ? toWorld->point(p) : p; }
+  bool mirrors() const { return toWorld && glm::determinant(toWorld->linear) < 0; }
   bool operator==(const Instance&) const = default;
 };
 

@@ -25,6 +25,8 @@ struct TexelGrid {
   size_t byteCount() const;  // of the texels in memory
 };
 
+using MipChain = std::shared_ptr<const std::vector<TexelGrid>>;
+
 enum class Wrap : uint8_t { Repeat, ClampToEdge, MirroredRepeat };
 enum class Filter : uint8_t { Linear, Nearest };
 
@@ -38,7 +40,7 @@ struct Texture {
   // Whether filtering weights colours by alpha, so that the colours of transparent texels do not
   // bleed into opaque ones. True for the base colour of blended or masked materials.
   bool weightedByAlpha = false;
-  std::shared_ptr<const std::vector<TexelGrid>> mipLevels;  // texture.h; null: none
+  MipChain mipLevels;  // texture.h; null: none
 
   // Linear RGBA at uv (v down, texel centres at +0.5). Any finite uv is valid; others give texel 0.
   vec4 lookup(vec2 uv) const;
@@ -73,8 +75,6 @@ struct TextureSlot {
   // The factor by which the transform scales areas.
   float areaFactor() const { return std::fabs(uvRow0.x * uvRow1.y - uvRow0.y * uvRow1.x); }
 };
-
-// Mip levels of a texture.
 
 // The grid at half its size, at a quarter, and so on down to one texel; empty for a grid of one
 // texel. Each texel is the mean, in linear light, of the texels it covers, stored like those of the

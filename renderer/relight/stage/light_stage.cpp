@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <sstream>
-#include <string_view>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -13,7 +12,6 @@
 #include "base/text.h"
 #include "image/io/read_image.h"
 #include "math/vec.h"
-#include "relight/stage/direction_basis.h"
 
 namespace chromeball {
 

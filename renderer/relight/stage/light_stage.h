@@ -44,8 +44,6 @@ double elementBytes(const DirectionBasis& basis);
 void checkInMemory(const DirectionBasis& basis, int width, int height, double memory,
                    std::string_view location);
 
-// A probe as weights of a light stage's elements.
-
 // The probe's weight for each function of the basis. For cells: the mean radiance of the rotated
 // probe over each. For spherical harmonics: the integral of radiance times the function. Computed
 // by quadrature over the bilinear interpolation of the map, each point with its exact solid angle,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A light stage under a probe, from all its numbers or only the largest (HDRI book, section 9.9.2).
+// A light stage under a probe, from all its numbers or only the largest (HDRI book, section 9.9.2,
+// Figure 9.45; Ng et al. 2003).
 #pragma once
 
 #include <bit>
@@ -12,9 +13,6 @@
 #include "relight/stage/stage_file.h"
 
 namespace chromeball {
-
-// The sum of a light stage's pictures under a probe, from the pictures themselves or from
-// transformed ones (HDRI book, section 9.9.2, Figure 9.45; Ng et al. 2003).
 
 // Transforms over the elements, each orthonormal: they keep the sum of products of two vectors.
 enum class RelightDomain {

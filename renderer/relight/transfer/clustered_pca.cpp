@@ -141,14 +141,6 @@ class Analysis {
 
 }  // namespace
 
-std::vector<float> ClusteredPca::signal(size_t i) const {
-  const Cluster& cluster = clusters[size_t(clusterOf[i])];
-  std::vector<float> sum = cluster.mean;
-  for (size_t m = 0; m < weights[i].size(); ++m)
-    for (size_t k = 0; k < sum.size(); ++k) sum[k] += weights[i][m] * cluster.vectors[m][k];
-  return sum;
-}
-
 ClusteredPca clusteredPca(const Signals& signals, int clusters, int vectors, int rounds) {
   if (clusters < 1 || vectors < 0 || signals.count() < 1)
     throw std::invalid_argument("clusteredPca: needs a signal, a cluster and vectors >= 0");

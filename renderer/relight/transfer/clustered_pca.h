@@ -30,8 +30,6 @@ struct ClusteredPca {
   std::vector<std::vector<float>> weights;  // by signal: as many as its cluster's vectors
   // Root of the sum of squared differences of all signals over the sum of the signals' squares.
   double error = 0;
-
-  std::vector<float> signal(size_t i) const;
 };
 
 // `signals`: finite. At most as many clusters as signals are made; a cluster has at most as many

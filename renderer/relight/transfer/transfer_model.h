@@ -28,7 +28,7 @@ namespace chromeball {
 //
 // sh:ORDER  the real spherical harmonics up to this order; l_k is the integral of radiance x Y_k.
 // haar:N    Haar wavelets of a cube map of N x N cells on each face, face by face. l is the
-//           orthonormal transform (haar.h) of the cells' mean radiances. The transform keeps
+//           orthonormal transform (transforms.h) of the cells' mean radiances. The transform keeps
 //           scalar products, so t is the transform of each cell's result with radiance 1.
 class LightBasis {
  public:

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls an estimate at every point of a scene, on all threads.
+// Transfer at points of a scene, by paths that look for light of every direction at once.
 #pragma once
 
-#include <atomic>
-#include <bit>
-#include <mutex>
-
 #include "bake/bake.h"
-#include "base/parallel.h"
 #include "relight/transfer/transfer_model.h"
 #include "transport/path.h"
 
 namespace chromeball {
-
-// Paths that look for light of every direction at once.
 
 // A probe whose light no path adds: the caller decides what an escaping path finds.
 class NoProbe : public LightSource {
@@ -41,87 +34,61 @@ inline EscapingPath follow(const PathTracer& tracer, PathState state, PathContex
   }
 }
 
-// The scratch of a thread.
-struct TransferWorker {
-  PathContext context;
-  InvalidSamples invalid;
-  std::vector<dvec3> sums;
-};
-
-// The random numbers of all points, and the loop over their samples. `tracer`: its lighting is a
-// NoProbe.
+// The transfer of points: a bake of paths in a world whose probe is dark.
 class TransferPoints {
  public:
-  TransferPoints(const PathTracer& tracer, const std::vector<PlacedMesh>& meshes,
-                 const std::vector<BakePoint>& points, const TransferSettings& settings)
-      : light_(tracer, BakedLight::Irradiance, INFINITY),
-        meshes_(meshes),
-        points_(points),
-        settings_(settings),
-        table_(std::bit_ceil(std::clamp(settings.samples, 16u, kMaxTable)),
-               dimension::tabulated(settings.maxDepth + 1), settings.seed) {}
+  // All arguments must outlive this.
+  TransferPoints(const World& world, const std::vector<PlacedMesh>& meshes,
+                 const std::vector<BakePoint>& points, const LightBasis& basis,
+                 const TransferSettings& settings)
+      : tracer_(world, dark_, {.maxDepth = settings.maxDepth, .estimateDepthCut = false}),
+        light_(tracer_, BakedLight::Irradiance, INFINITY),
+        samples_(light_, meshes, points, settings.samples, settings.maxDepth, settings.seed),
+        count_(settings.samples),
+        basis_(basis) {}
 
-  // Calls estimate(point, surface, worker), which may call forSamples(), for each point that is not
+  const PathTracer& tracer() const { return tracer_; }
+
+  // Calls estimate(point, surface, worker), which may call setMean(), for each point that is not
   // buried; `result` gets the rest.
-  template <class Estimate>
-  void forPoints(VertexTransfer& result, const Progress& progress, const Estimate& estimate) const {
-    result.isBuried.assign(points_.size(), 0);
-    PerThread<TransferWorker> workers([&] {
-      return TransferWorker{
-          {.sampler = PixelSampler(table_, settings_.seed), .clamp = Clamp()}, {}, {}};
-    });
-    std::atomic<size_t> finished = 0;
-    std::mutex reporting;
-    constexpr size_t kGrain = 16;
-    parallelRanges(points_.size(), kGrain, [&](size_t begin, size_t end) {
-      TransferWorker& worker = workers.local();
-      for (size_t i = begin; i < end; ++i) {
-        const BakePoint& point = points_[i];
-        const Surface surface = light_.surfaceAt(point);
-        worker.context.sampler.startPixel(point.x, point.y, kProbingBlock);
-        result.isBuried[i] = light_.isBuried(point, surface, meshes_, worker.context);
-        if (!result.isBuried[i]) estimate(i, surface, worker);
-      }
-      const size_t count = finished += end - begin;
-      if (std::unique_lock lock(reporting, std::try_to_lock); lock)
-        progress(double(count) / double(points_.size()));
-    });
-    workers.forEach([&](const TransferWorker& worker) { result.invalid.add(worker.invalid); });
+  void forPoints(VertexTransfer& result, const Progress& progress,
+                 const PointSamples::Estimate& estimate) const {
+    PointSamples::Totals totals = samples_.forPoints(estimate, progress);
+    result.isBuried = std::move(totals.isBuried);
+    result.invalid = totals.invalid;
   }
 
-  // Calls add(trace()) for each sample, with its random numbers set, except for invalid paths.
-  // Returns how many are valid.
-  template <class Trace, class Add>
-  uint32_t forSamples(size_t index, TransferWorker& worker, const Trace& trace,
-                      const Add& add) const {
-    const BakePoint& point = points_[index];
-    PixelSampler& sampler = worker.context.sampler;
-    uint32_t valid = 0;
-    for (uint32_t i = 0; i < settings_.samples; ++i) {
-      if (i % table_.size() == 0) sampler.startPixel(point.x, point.y, i / table_.size());
-      sampler.startSample(i % table_.size());
-      sampler.startVertex(0);
+  // Sets the mean of all valid paths that trace() makes, if there is one: their transfer, and the
+  // light of the scene's own lamps.
+  void setMean(size_t point, PointWorker& worker, const std::function<EscapingPath()>& trace,
+               std::span<Rgb> transfer, Rgb& own) const {
+    std::vector<dvec3> sums(basis_.size(), dvec3(0));
+    dvec3 found(0);
+    EscapingPath path;
+    const auto sample = [&] {
+      worker.context.sampler.startVertex(0);
       ++worker.context.counts.camera;
-      const EscapingPath path = trace();
-      if (const auto defect = defectOf(path.throughput + path.found, false)) {
-        worker.invalid.add(*defect, int(point.x), int(point.y));
-        continue;
-      }
-      add(path);
-      ++valid;
-    }
-    return valid;
+      path = trace();
+      return path.throughput + path.found;
+    };
+    const auto add = [&](const Rgb&) {
+      if (path.escapes) basis_.add(path.direction, dvec3(path.throughput), sums);
+      found += dvec3(path.found);
+    };
+    const uint32_t valid = samples_.forSamples(point, count_, 0, 1, worker, sample, add);
+    if (valid == 0) return;
+    for (size_t k = 0; k < sums.size(); ++k) transfer[k] = Rgb(sums[k] / double(valid));
+    basis_.transform(transfer);
+    own = Rgb(found / double(valid));
   }
 
  private:
-  static constexpr uint32_t kMaxTable = 4096;  // points; more samples take another randomisation
-  static constexpr uint64_t kProbingBlock = ~0ull;  // of the sampler, for isBuried()
-
+  NoProbe dark_;
+  PathTracer tracer_;
   PointLight light_;
-  const std::vector<PlacedMesh>& meshes_;
-  const std::vector<BakePoint>& points_;
-  const TransferSettings& settings_;
-  SobolTable table_;
+  PointSamples samples_;
+  uint32_t count_;  // paths of a mean
+  const LightBasis& basis_;
 };
 
 }  // namespace chromeball

@@ -7,14 +7,9 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "scene/mesh.h"
 
 namespace chromeball {
 namespace {
-
-bool areAllFinite(const vec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
-bool areAllFinite(const vec3& v) { return isFinite(v); }
-bool areAllFinite(const vec4& v) { return isFinite(vec3(v)) && std::isfinite(v.w); }
 
 template <class T>
 void checkLength(const std::vector<T>& array, size_t vertices, const std::string& name) {
@@ -25,7 +20,8 @@ void checkLength(const std::vector<T>& array, size_t vertices, const std::string
 template <class T>
 void checkFinite(const std::vector<T>& array, const std::string& name) {
   for (size_t i = 0; i < array.size(); ++i)
-    if (!areAllFinite(array[i])) throwInput("{}[{}]: is not finite", name, i);
+    for (int k = 0; k < T::length(); ++k)
+      if (!std::isfinite(array[i][k])) throwInput("{}[{}]: is not finite", name, i);
 }
 
 void checkTriangles(const Mesh& mesh, const std::string& name) {
@@ -56,10 +52,8 @@ void completeTangents(const Material& material, Mesh& mesh) {
   if (!mesh.tangents.empty()) return repairTangents(mesh);
   auto uv = longArray<vec2>(mesh.positions.size());
   if (hasSet(mesh, slot->uvSet))
-    forRanges(uv.size(), [&](size_t begin, size_t end) {
-      const std::vector<vec2>& set = mesh.uvs[size_t(slot->uvSet)];
-      for (size_t i = begin; i < end; ++i) uv[i] = slot->transform(set[i]);
-    });
+    forIndices(uv.size(), 1,
+               [&](size_t i) { uv[i] = slot->transform(mesh.uvs[size_t(slot->uvSet)][i]); });
   computeTangents(mesh, uv);
 }
 

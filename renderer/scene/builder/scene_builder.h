@@ -60,14 +60,11 @@ class SceneBuilder {
   void addAmbient(const AmbientLamp& light);
 
  private:
-  using MipChain = std::shared_ptr<const std::vector<TexelGrid>>;
   int addTexture(Texture texture);
 
   Scene& scene_;
   std::map<std::tuple<const TexelGrid*, bool, bool>, MipChain> chains_;  // by srgb, weightedByAlpha
 };
-
-// Lamps of a scene file, added to a scene.
 
 // Adds the lamp to the scene, whose origin is at `origin` in world space. A disc becomes a
 // single-sided emitting polygon of kDiscSides sides with exactly the area of the disc.

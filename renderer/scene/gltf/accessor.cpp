@@ -33,20 +33,10 @@ struct Elements {
 // size.
 constexpr size_t kMaxElementsWithoutView = size_t(1) << 24;
 
+// 0 for types that glTF 2.0 does not have, of which tinygltf knows two.
 size_t componentSize(int type) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      return 0;
-  }
+  if (type == TINYGLTF_COMPONENT_TYPE_INT || type == TINYGLTF_COMPONENT_TYPE_DOUBLE) return 0;
+  return size_t(std::max(tinygltf::GetComponentSizeInBytes(uint32_t(type)), 0));
 }
 
 // Throws unless `count` elements of `size` bytes, `stride` bytes apart, fit into the buffer view
@@ -117,7 +107,8 @@ void copyElements(size_t elementSize, Elements& elements) {
   elements.stride = elementSize;
 }
 
-Elements readElements(GltfFile& file, int accessor, const std::string& user) {
+// Throws unless the elements have so many components.
+Elements readElements(GltfFile& file, int accessor, int components, const std::string& user) {
   const tinygltf::Accessor& a = file.at(file.model.accessors, accessor, "accessors", user);
   const std::string where = fmt::format("{}: accessors[{}]", user, accessor);
   Elements elements;
@@ -148,6 +139,8 @@ Elements readElements(GltfFile& file, int accessor, const std::string& user) {
   file.spend(a.count * elementSize);
   if (!elements.first || a.sparse.isSparse) copyElements(elementSize, elements);
   if (a.sparse.isSparse) substituteSparse(file, a, elementSize, elements, where);
+  if (elements.components != components)
+    file.fail("{} has {} components; it must have {}", where, elements.components, components);
   return elements;
 }
 
@@ -176,32 +169,12 @@ void convert(const Elements& elements, float* out) {
 }
 
 void toFloats(const Elements& elements, float* out) {
-  switch (elements.componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return convert<int8_t>(elements, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return convert<uint8_t>(elements, out);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return convert<int16_t>(elements, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return convert<uint16_t>(elements, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return convert<uint32_t>(elements, out);
-    default:
-      return convert<float>(elements, out);
-  }
-}
-
-void checkComponents(const GltfFile& file, const Elements& elements, int expected, int accessor,
-                     const std::string& where) {
-  if (elements.components != expected)
-    file.fail("{}: accessors[{}] has {} components; it must have {}", where, accessor,
-              elements.components, expected);
+  withComponentType(elements.componentType,
+                    [&](auto zero) { convert<decltype(zero)>(elements, out); });
 }
 
 Elements readIndexElements(GltfFile& file, int accessor, const std::string& where) {
-  Elements elements = readElements(file, accessor, where);
-  checkComponents(file, elements, 1, accessor, where);
+  Elements elements = readElements(file, accessor, 1, where);
   if (!isUnsigned(elements.componentType))
     file.fail("{}: accessors[{}] has componentType {}; indices must be unsigned integers", where,
               accessor, elements.componentType);
@@ -239,8 +212,7 @@ void copyIndices(const GltfFile& file, const Elements& elements, size_t vertexCo
 template <int N>
 std::vector<glm::vec<N, float>> readVectors(GltfFile& file, int accessor,
                                             const std::string& where) {
-  const Elements elements = readElements(file, accessor, where);
-  checkComponents(file, elements, N, accessor, where);
+  const Elements elements = readElements(file, accessor, N, where);
   auto vectors = longArray<glm::vec<N, float>>(elements.count);
   toFloats(elements, &vectors[0][0]);
   return vectors;
@@ -269,8 +241,7 @@ std::vector<Triangle> readTriangles(GltfFile& file, int accessor, size_t vertexC
 }
 
 std::vector<glm::dmat4> readMatrices(GltfFile& file, int accessor, const std::string& where) {
-  const Elements elements = readElements(file, accessor, where);
-  checkComponents(file, elements, 16, accessor, where);
+  const Elements elements = readElements(file, accessor, 16, where);
   std::vector<glm::mat4> floats(elements.count);
   toFloats(elements, &floats[0][0][0]);
   return {floats.begin(), floats.end()};

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -38,9 +37,19 @@ size_t findAnimation(const GltfFile& file, const AnimationTime& when) {
 
 enum class Interpolation { Step, Linear, CubicSpline };
 
+// Numbers per key of a channel; 1 for morph weights, where the number of targets decides; 0 for a
+// target that is ignored.
+int componentsOf(const std::string& path) {
+  if (path == "weights") return 1;
+  if (path == "rotation") return 4;
+  return path == "translation" || path == "scale" ? 3 : 0;
+}
+
 // An animation sampler: keys over time. `values` holds `width` numbers per key; for a cubic spline
 // three times as many: in-tangent, value, out-tangent.
 struct Track {
+  std::string where;  // in the file
+  bool isRotation = false;
   Interpolation interpolation = Interpolation::Linear;
   std::vector<float> times;
   std::vector<double> values;
@@ -66,23 +75,28 @@ std::vector<double> readNumbers(GltfFile& file, int accessor, const std::string&
   return numbers;
 }
 
-// `components`: numbers per key; 1 for morph weights, where the number of targets decides.
-Track readTrack(GltfFile& file, const tinygltf::AnimationSampler& sampler, int components,
-                const std::string& where) {
+// `user`: the location of the channel, whose target is not ignored.
+Track readTrack(GltfFile& file, size_t animation, const tinygltf::AnimationChannel& channel,
+                const std::string& user) {
+  const auto& sampler =
+      file.at(file.model.animations[animation].samplers, channel.sampler, "samplers", user);
+  const int components = componentsOf(channel.target_path);
   Track track;
+  track.where = fmt::format("animations[{}].samplers[{}]", animation, channel.sampler);
+  track.isRotation = components == 4;
   if (sampler.interpolation == "STEP")
     track.interpolation = Interpolation::Step;
   else if (sampler.interpolation == "CUBICSPLINE")
     track.interpolation = Interpolation::CubicSpline;
   else if (sampler.interpolation != "LINEAR")
-    file.fail("{}.interpolation: \"{}\" is not STEP, LINEAR or CUBICSPLINE", where,
+    file.fail("{}.interpolation: \"{}\" is not STEP, LINEAR or CUBICSPLINE", track.where,
               sampler.interpolation);
-  for (double time : readNumbers<1>(file, sampler.input, where + ".input"))
+  for (double time : readNumbers<1>(file, sampler.input, track.where + ".input"))
     track.times.push_back(float(time));
   if (!std::is_sorted(track.times.begin(), track.times.end()))
-    file.fail("{}.input: the keys are not in ascending order of time", where);
+    file.fail("{}.input: the keys are not in ascending order of time", track.where);
 
-  const std::string at = where + ".output";
+  const std::string at = track.where + ".output";
   track.values = components == 1   ? readNumbers<1>(file, sampler.output, at)
                  : components == 3 ? readNumbers<3>(file, sampler.output, at)
                                    : readNumbers<4>(file, sampler.output, at);
@@ -99,15 +113,14 @@ glm::dquat quaternion(const double* q) { return {q[3], q[0], q[1], q[2]}; }
 // LINEAR: spherical interpolation along the shorter arc. CUBICSPLINE: the interpolated quaternion,
 // normalised (appendix C).
 std::vector<double> unitRotation(const GltfFile& file, const Track& track, size_t i,
-                                 double fraction, const std::vector<double>& interpolated,
-                                 const std::string& where) {
+                                 double fraction, const std::vector<double>& interpolated) {
   glm::dquat q = quaternion(interpolated.data());
   if (track.interpolation == Interpolation::Linear && fraction > 0)
     q = glm::slerp(glm::normalize(quaternion(track.value(i))),
                    glm::normalize(quaternion(track.value(i + 1))), fraction);
   const double length = glm::length(q);
   if (!(length > 0) || !std::isfinite(length))
-    file.fail("{}.output: a quaternion has length 0", where);
+    file.fail("{}.output: a quaternion has length 0", track.where);
   q /= length;
   return {q.x, q.y, q.z, q.w};
 }
@@ -119,8 +132,7 @@ bool isBefore(double seconds, float key) {
   return key - seconds > kRounding * std::fabs(key);
 }
 
-std::vector<double> valueAt(const GltfFile& file, const Track& track, double seconds,
-                            bool isRotation, const std::string& where) {
+std::vector<double> valueAt(const GltfFile& file, const Track& track, double seconds) {
   const auto& times = track.times;
   const auto after = std::upper_bound(times.begin(), times.end(), seconds, isBefore);
   const size_t i = after == times.begin() ? 0 : size_t(after - times.begin()) - 1;
@@ -141,7 +153,7 @@ std::vector<double> valueAt(const GltfFile& file, const Track& track, double sec
                   (3 * t2 - 2 * t3) * track.value(i + 1)[k] +
                   (t3 - t2) * duration * track.inTangent(i + 1)[k];
   }
-  return isRotation ? unitRotation(file, track, i, fraction, result, where) : result;
+  return track.isRotation ? unitRotation(file, track, i, fraction, result) : result;
 }
 
 // Beyond rounding.
@@ -156,21 +168,13 @@ bool areDifferent(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // Primitives of a mesh have the same number of morph targets (glTF 2.0, 3.7.2.2).
-void checkWeights(const GltfFile& file, const tinygltf::Node& node, size_t perKey,
-                  const std::string& where) {
+void checkWeights(const GltfFile& file, const tinygltf::Node& node, const Track& track) {
   if (node.mesh < 0 || size_t(node.mesh) >= file.model.meshes.size()) return;
   const auto& primitives = file.model.meshes[size_t(node.mesh)].primitives;
-  const size_t targets = primitives.empty() ? perKey : primitives.front().targets.size();
-  if (perKey != targets)
-    file.fail("{}.output: has {} weights for each key, and meshes[{}] has {} morph targets", where,
-              perKey, node.mesh, targets);
-}
-
-// Numbers per key of a channel (readTrack()); 0: of a target that is ignored.
-int componentsOf(const std::string& path) {
-  if (path == "weights") return 1;
-  if (path == "rotation") return 4;
-  return path == "translation" || path == "scale" ? 3 : 0;
+  const size_t targets = primitives.empty() ? track.width : primitives.front().targets.size();
+  if (track.width != targets)
+    file.fail("{}.output: has {} weights for each key, and meshes[{}] has {} morph targets",
+              track.where, track.width, node.mesh, targets);
 }
 
 }  // namespace
@@ -190,49 +194,41 @@ void applyAnimation(GltfFile& file, const AnimationTime& when) {
     const tinygltf::AnimationChannel& channel = animation.channels[c];
     const std::string where = fmt::format("animations[{}].channels[{}]", index, c);
     const std::string& path = channel.target_path;
-    const bool isWeights = path == "weights", isRotation = path == "rotation";
-    if (channel.target_node == -1 ||
-        !(isWeights || isRotation || path == "translation" || path == "scale")) {
+    if (channel.target_node == -1 || componentsOf(path) == 0) {
       file.warnOnce(
           "ignored: animation channels that target neither a transform nor morph weights");
       continue;
     }
-    file.at(file.model.nodes, channel.target_node, "nodes", where + ".target");
-    tinygltf::Node& node = file.model.nodes[size_t(channel.target_node)];
+    tinygltf::Node& node =
+        file.at(file.model.nodes, channel.target_node, "nodes", where + ".target");
+    const bool isWeights = path == "weights";
     if (!node.matrix.empty() && !isWeights)
       file.fail(
           "{}: animates nodes[{}], which has a matrix; only nodes with translation, rotation "
           "and scale can be animated",
           where, channel.target_node);
 
-    const auto& sampler = file.at(animation.samplers, channel.sampler, "samplers", where);
-    const std::string at = fmt::format("animations[{}].samplers[{}]", index, channel.sampler);
-    const Track track = readTrack(file, sampler, isWeights ? 1 : isRotation ? 4 : 3, at);
-    if (isWeights) checkWeights(file, node, track.width, at);
-    std::vector<double>& target = isWeights         ? node.weights
-                                  : isRotation      ? node.rotation
-                                  : path == "scale" ? node.scale
-                                                    : node.translation;
+    const Track track = readTrack(file, index, channel, where);
+    if (isWeights) checkWeights(file, node, track);
+    std::vector<double>& target = isWeights          ? node.weights
+                                  : track.isRotation ? node.rotation
+                                  : path == "scale"  ? node.scale
+                                                     : node.translation;
     file.animated[size_t(channel.target_node)] = true;
-    target = valueAt(file, track, when.seconds, isRotation, at);
+    target = valueAt(file, track, when.seconds);
   }
 }
 
 std::vector<double> changesAfter(GltfFile& file, const AnimationTime& when, double seconds) {
   const size_t index = findAnimation(file, when);
-  const Animation& animation = file.model.animations[index];
   std::set<double> changes;
-  for (const tinygltf::AnimationChannel& channel : animation.channels) {
-    const int components = componentsOf(channel.target_path);
-    if (channel.target_node == -1 || components == 0) continue;
-    const std::string at = fmt::format("animations[{}].samplers[{}]", index, channel.sampler);
-    const auto& sampler = file.at(animation.samplers, channel.sampler, "samplers", at);
-    const Track track = readTrack(file, sampler, components, at);
-    const bool isRotation = components == 4;
-    const std::vector<double> opening = valueAt(file, track, when.seconds, isRotation, at);
+  for (const tinygltf::AnimationChannel& channel : file.model.animations[index].channels) {
+    if (channel.target_node == -1 || componentsOf(channel.target_path) == 0) continue;
+    const Track track = readTrack(file, index, channel, fmt::format("animations[{}]", index));
+    const std::vector<double> opening = valueAt(file, track, when.seconds);
     const auto addIfOther = [&](double time) {
       if (time > when.seconds && time < when.seconds + seconds &&
-          areDifferent(valueAt(file, track, time, isRotation, at), opening))
+          areDifferent(valueAt(file, track, time), opening))
         changes.insert(time - when.seconds);
     };
     for (size_t i = 0; i < track.times.size(); ++i) {

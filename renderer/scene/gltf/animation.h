@@ -23,8 +23,6 @@ std::vector<double> changesAfter(GltfFile& file, const AnimationTime& when, doub
 // The names of the file's animations, for messages: "`Walk`, `Run` and 3 more".
 std::string animationNames(const GltfFile& file);
 
-// Poses a mesh: morph targets and skinning.
-
 // The pose that a node gives its mesh.
 struct Pose {
   std::span<const double> weights;     // of the morph targets

@@ -39,11 +39,9 @@ void readExtras(GltfFile& file, CustomData& data) {
   }
   const Value& tables = memberOf(extras, "tables");
   if (!tables.IsObject()) return;
-  for (const std::string& name : tables.Keys()) {
-    const Value& index = memberOf(tables, name);
-    data.tables[name] = readFinite(file, index.IsInt() ? index.GetNumberAsInt() : -1,
-                                   "extras.chromeball.tables." + name);
-  }
+  for (const std::string& name : tables.Keys())
+    data.tables[name] =
+        readFinite(file, intMember(tables, name), "extras.chromeball.tables." + name);
 }
 
 // Whether the transform is a positive scale and a translation.

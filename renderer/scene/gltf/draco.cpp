@@ -10,6 +10,7 @@
 #include <cstring>
 #include <new>
 
+#include "scene/gltf/accessor.h"
 #include "scene/gltf/gltf_json.h"
 
 namespace chromeball {
@@ -93,25 +94,11 @@ Bytes attributeBytes(const GltfFile& file, const draco::Mesh& mesh,
   const int components = tinygltf::GetNumComponentsInType(uint32_t(accessor.type));
   if (components < 1 || components > 4)
     file.fail("{}: the type of its accessor is not allowed for vertex attributes", where);
-  const auto copy = [&] {
-    switch (accessor.componentType) {
-      case TINYGLTF_COMPONENT_TYPE_BYTE:
-        return copyAttribute<int8_t>;
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        return copyAttribute<uint8_t>;
-      case TINYGLTF_COMPONENT_TYPE_SHORT:
-        return copyAttribute<int16_t>;
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        return copyAttribute<uint16_t>;
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        return copyAttribute<uint32_t>;
-      default:
-        return copyAttribute<float>;
-    }
-  }();
   Bytes bytes;
-  if (!copy(mesh, attribute, components, bytes))
-    file.fail("{}: damaged data: values do not fit the type of the accessor", where);
+  const bool fits = withComponentType(accessor.componentType, [&](auto zero) {
+    return copyAttribute<decltype(zero)>(mesh, attribute, components, bytes);
+  });
+  if (!fits) file.fail("{}: damaged data: values do not fit the type of the accessor", where);
   return bytes;
 }
 
@@ -137,7 +124,7 @@ class DracoReader {
     const Value& attributes = memberOf(extension, "attributes");
     if (!memberOf(extension, "bufferView").IsInt() || !attributes.IsObject())
       file_.fail("{}: has no bufferView or no attributes", where);
-    const int view = memberOf(extension, "bufferView").GetNumberAsInt();
+    const int view = intMember(extension, "bufferView");
     const draco::Mesh& mesh = meshOf(view, ownCount(primitive.indices, where + ".indices"), where);
     if (tinygltf::Accessor* indices =
             toFill(primitive.indices, {view, kIndices}, where + ".indices")) {
@@ -148,14 +135,11 @@ class DracoReader {
       const auto user = primitive.attributes.find(name);
       if (user == primitive.attributes.end()) continue;
       const std::string at = where + ".attributes." + name;
-      const Value& id = memberOf(attributes, name);
-      tinygltf::Accessor* target =
-          toFill(user->second, {view, id.IsInt() ? id.GetNumberAsInt() : -1}, at);
+      const int id = intMember(attributes, name);
+      tinygltf::Accessor* target = toFill(user->second, {view, id}, at);
       if (!target) continue;
       const draco::PointAttribute* attribute =
-          id.IsInt() && id.GetNumberAsInt() >= 0
-              ? mesh.GetAttributeByUniqueId(uint32_t(id.GetNumberAsInt()))
-              : nullptr;
+          id >= 0 ? mesh.GetAttributeByUniqueId(uint32_t(id)) : nullptr;
       if (!attribute) file_.fail("{}: the compressed mesh has no such attribute", at);
       file_.spend(uint64_t(mesh.num_points()) * 16);
       setData(*target, mesh.num_points(), attributeBytes(file_, mesh, *attribute, *target, at));
@@ -183,8 +167,7 @@ class DracoReader {
   };
 
   tinygltf::Accessor& accessor(int index, const std::string& where) {
-    file_.at(file_.model.accessors, index, "accessors", where);
-    return file_.model.accessors[size_t(index)];
+    return file_.at(file_.model.accessors, index, "accessors", where);
   }
 
   size_t ownCount(int index, const std::string& where) {

@@ -22,7 +22,7 @@ constexpr uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 
 constexpr int kMaxNesting = 128;
 
 template <class... Args>
-[[noreturn]] void failGlb(fmt::format_string<Args...> format, Args&&... args) {
+[[noreturn]] void failWith(fmt::format_string<Args...> format, Args&&... args) {
   throw std::runtime_error(fmt::format(format, std::forward<Args>(args)...));
 }
 
@@ -70,13 +70,13 @@ size_t nextChunk(std::span<const uint8_t> glb, size_t at, size_t size) {
 
 GltfChunks splitContainer(std::span<const uint8_t> file) {
   if (file.size() < 4 || word(file, 0) != kMagic) return {file, {}};
-  if (file.size() < 20) failGlb("is a truncated GLB: {} bytes", file.size());
+  if (file.size() < 20) failWith("is a truncated GLB: {} bytes", file.size());
   if (const uint32_t version = word(file, 4); version != 2)
-    failGlb("is glTF {}.0; convert it to glTF 2.0 (gltf-pipeline can)", version);
+    failWith("is glTF {}.0; convert it to glTF 2.0 (gltf-pipeline can)", version);
   const size_t length = word(file, 8);
   if (length > file.size() || length < 20)
-    failGlb("is a truncated GLB: its header claims {} bytes, but the file has {}", length,
-            file.size());
+    failWith("is a truncated GLB: its header claims {} bytes, but the file has {}", length,
+             file.size());
 
   GltfChunks chunks;
   for (size_t at = 12; length - at >= 8;) {
@@ -84,25 +84,26 @@ GltfChunks splitContainer(std::span<const uint8_t> file) {
     const uint32_t type = word(file, at + 4);
     at += 8;
     if (size > length - at)
-      failGlb("is a damaged GLB: a chunk claims {} bytes, but only {} are left", size, length - at);
+      failWith("is a damaged GLB: a chunk claims {} bytes, but only {} are left", size,
+               length - at);
     if (type == kJsonChunk && chunks.json.empty()) chunks.json = file.subspan(at, size);
     if (type == kBinaryChunk && chunks.binary.empty()) chunks.binary = file.subspan(at, size);
     at = nextChunk(file.first(length), at, size);
   }
-  if (chunks.json.empty()) failGlb("is a damaged GLB: it has no JSON chunk");
+  if (chunks.json.empty()) failWith("is a damaged GLB: it has no JSON chunk");
   return chunks;
 }
 
 json parseRoot(std::span<const uint8_t> text) {
-  if (nesting(text) > kMaxNesting) failGlb("nests deeper than {} levels", kMaxNesting);
+  if (nesting(text) > kMaxNesting) failWith("nests deeper than {} levels", kMaxNesting);
   json root;
   try {
     root = parseJson(text);
   } catch (const json::exception& e) {  // "[json.exception.KIND.NUMBER] reason"
     const char* reason = std::strchr(e.what(), ']');
-    failGlb("is neither GLB nor JSON: {}", reason ? reason + 2 : e.what());
+    failWith("is neither GLB nor JSON: {}", reason ? reason + 2 : e.what());
   }
-  if (!root.is_object()) failGlb("is not a JSON object");
+  if (!root.is_object()) failWith("is not a JSON object");
   makeIntegersWhole(root);
   return root;
 }
@@ -110,11 +111,6 @@ json parseRoot(std::span<const uint8_t> text) {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class... Args>
-[[noreturn]] void failUri(fmt::format_string<Args...> format, Args&&... args) {
-  throw std::runtime_error(fmt::format(format, std::forward<Args>(args)...));
-}
 
 // The six bits of a base64 digit (RFC 4648, also in its URL-safe alphabet); -1 for other
 // characters.
@@ -180,29 +176,29 @@ std::string decodePercent(const std::string& uri) {
 void checkNoScheme(const std::string& uri) {
   const size_t colon = uri.find(':');
   if (colon != std::string::npos && colon < uri.find('/'))
-    failUri("has the scheme {}; it must be a relative path", uri.substr(0, colon + 1));
+    failWith("has the scheme {}; it must be a relative path", uri.substr(0, colon + 1));
 }
 
 void checkFileName(const std::string& name) {
-  if (name.empty()) failUri("is not a file name");
+  if (name.empty()) failWith("is not a file name");
   const auto isForbidden = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '\\'; };
   if (std::any_of(name.begin(), name.end(), isForbidden))
-    failUri("has a backslash or a control character; it must be a relative path with /");
+    failWith("has a backslash or a control character; it must be a relative path with /");
 }
 
 void checkInside(const fs::path& folder, const std::string& name) {
   constexpr const char* kRemedy = "permission (allow-external) lifts that";
   const fs::path path(name);
-  if (path.is_absolute()) failUri("is an absolute path; {}", kRemedy);
+  if (path.is_absolute()) failWith("is an absolute path; {}", kRemedy);
   std::error_code error;
   const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder);
   const fs::path target = fs::weakly_canonical(root / path, error);
-  if (error) failUri("cannot be found: {}", error.message());
+  if (error) failWith("cannot be found: {}", error.message());
   const auto [end, ignored] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
   if (end == root.end()) return;
   const bool climbs = std::find(path.begin(), path.end(), "..") != path.end();
-  failUri("is outside of the model's folder {}; {}", climbs ? "by \"..\"" : "through a link",
-          kRemedy);
+  failWith("is outside of the model's folder {}; {}", climbs ? "by \"..\"" : "through a link",
+           kRemedy);
 }
 
 }  // namespace chromeball

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/error.h"
-#include "base/file.h"
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/text.h"

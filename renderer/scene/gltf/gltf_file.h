@@ -60,9 +60,8 @@ class GltfFile {
 
   // Element `index` of one of the file's arrays, which is called `name`. Throws InputError if it
   // does not exist.
-  template <class T>
-  const T& at(const std::vector<T>& array, int index, const char* name,
-              const std::string& where) const {
+  template <class Array>
+  auto& at(Array& array, int index, const char* name, const std::string& where) const {
     if (index < 0 || size_t(index) >= array.size())
       fail("{}: {}[{}] does not exist ({} in the file)", where, name, index, array.size());
     return array[size_t(index)];

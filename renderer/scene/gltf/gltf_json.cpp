@@ -18,31 +18,11 @@ namespace {
 
 using nlohmann::json;
 
-const std::set<std::string> kSupportedExtensions = {
-    "EXT_lights_image_based",
-    "EXT_mesh_gpu_instancing",
-    "EXT_meshopt_compression",
-    "EXT_texture_webp",
-    "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_iridescence",
-    "KHR_materials_sheen",
-    "KHR_materials_variants",
-    "KHR_materials_dispersion",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_meshopt_compression",
-    "KHR_node_visibility",
-    "KHR_texture_transform",
-};
+bool isSupported(std::string_view extension) {
+  return extension == "KHR_mesh_quantization" ||
+         ((extension.starts_with("EXT_") || extension.starts_with("KHR_")) &&
+          findObjectType(extension));
+}
 
 // How the user can avoid an unsupported extension.
 const char* adviceFor(const std::string& extension) {
@@ -58,6 +38,11 @@ std::set<std::string> namesIn(const json& root, const char* key) {
   if (const auto list = root.find(key); list != root.end())
     for (const json& name : *list) names.insert(name.get<std::string>());
   return names;
+}
+
+bool exceedsInt(const json& value) {
+  if (value.is_number_unsigned()) return value.get<uint64_t>() > uint64_t(INT_MAX);
+  return value.is_number_integer() && value.get<int64_t>() < INT_MIN;
 }
 
 }  // namespace
@@ -77,11 +62,11 @@ void checkVersion(const json& root) {
 
 std::set<std::string> checkExtensions(const json& root) {
   for (const std::string& name : namesIn(root, "extensionsRequired"))
-    if (!kSupportedExtensions.contains(name))
+    if (!isSupported(name))
       throw std::runtime_error(fmt::format("requires the extension {}, which is not supported; {}",
                                            printableName(name), adviceFor(name)));
   std::set<std::string> ignored = namesIn(root, "extensionsUsed");
-  for (const std::string& name : kSupportedExtensions) ignored.erase(name);
+  std::erase_if(ignored, isSupported);
   return ignored;
 }
 
@@ -116,25 +101,14 @@ int fillGaps(json& root) {
   return none;
 }
 
-namespace {
-
-bool exceedsInt(const json& value) {
-  if (value.is_number_unsigned()) return value.get<uint64_t>() > uint64_t(INT_MAX);
-  return value.is_number_integer() && value.get<int64_t>() < INT_MIN;
-}
-
-void keepLargeNumbersOf(json& value, bool inExtension) {
+void keepLargeNumbers(json& value, bool inExtension) {
   if (inExtension && exceedsInt(value)) value = value.get<double>();
   if (value.is_array())
-    for (json& element : value) keepLargeNumbersOf(element, inExtension);
+    for (json& element : value) keepLargeNumbers(element, inExtension);
   if (value.is_object())
     for (auto& [key, member] : value.items())
-      keepLargeNumbersOf(member, inExtension || key == "extensions" || key == "extras");
+      keepLargeNumbers(member, inExtension || key == "extensions" || key == "extras");
 }
-
-}  // namespace
-
-void keepLargeNumbers(json& root) { keepLargeNumbersOf(root, false); }
 
 json takeArray(json& root, const char* key) {
   const auto found = root.find(key);
@@ -156,8 +130,6 @@ std::string stringMember(const json& object, const char* key) {
 }
 
 namespace {
-
-using nlohmann::json;
 
 // The place of a value in the file: a member or an element of its parent.
 struct JsonPlace {
@@ -240,12 +212,8 @@ void checkType(json& value, std::string_view type, const JsonPlace& place) {
 
 void checkExtensionTypes(json& extensions, const JsonPlace& place) {
   require(extensions.is_object(), extensions, "object", place);
-  const auto kindOf = [](std::string_view name) {
-    return name == "KHR_meshopt_compression" ? "EXT_meshopt_compression"
-                                             : name;  // the same members
-  };
   for (const auto& [name, extension] : extensions.items())
-    if (const ObjectType* object = findObjectType(kindOf(name)))
+    if (const ObjectType* object = findObjectType(name))
       checkObject(extension, *object, {&place, name});
 }
 
@@ -254,8 +222,8 @@ void checkObject(json& value, const ObjectType& object, const JsonPlace& place) 
   for (const auto& [name, element] : value.items())
     if (name == "extensions")
       checkExtensionTypes(element, {&place, name});
-    else if (const MemberType* member = findMemberType(object, name))
-      checkType(element, member->type, {&place, name});
+    else if (const std::string_view type = memberTypeOf(object, name); !type.empty())
+      checkType(element, type, {&place, name});
 }
 
 }  // namespace
@@ -270,6 +238,16 @@ const tinygltf::Value& memberOf(const tinygltf::Value& object, const std::string
 const tinygltf::Value& elementOf(const tinygltf::Value& array, size_t index) {
   static const tinygltf::Value none;
   return index < array.ArrayLen() ? array.Get(int(index)) : none;
+}
+
+int intMember(const tinygltf::Value& object, const std::string& key, int fallback) {
+  const tinygltf::Value& v = memberOf(object, key);
+  return v.IsInt() ? v.GetNumberAsInt() : fallback;
+}
+
+std::string textMember(const tinygltf::Value& object, const char* key, const char* fallback) {
+  const tinygltf::Value& v = memberOf(object, key);
+  return v.IsString() ? v.Get<std::string>() : fallback;
 }
 
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name) {

@@ -32,7 +32,7 @@ int fillGaps(nlohmann::json& root);
 
 // tinygltf reads whole numbers in extensions and extras as int. Those that exceed its range become
 // floating-point numbers.
-void keepLargeNumbers(nlohmann::json& root);
+void keepLargeNumbers(nlohmann::json& value, bool inExtension = false);
 
 // Removes an array from the file and returns it; empty if there is none.
 nlohmann::json takeArray(nlohmann::json& root, const char* key);
@@ -59,6 +59,10 @@ void checkMemberTypes(nlohmann::json& root);
 // [] are null too.)
 const tinygltf::Value& memberOf(const tinygltf::Value& object, const std::string& key);
 const tinygltf::Value& elementOf(const tinygltf::Value& array, size_t index);
+
+// A member that is a whole number, or a string; `fallback` if there is none.
+int intMember(const tinygltf::Value& object, const std::string& key, int fallback = -1);
+std::string textMember(const tinygltf::Value& object, const char* key, const char* fallback = "");
 
 // The extension's object; null if it is absent or not an object.
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name);

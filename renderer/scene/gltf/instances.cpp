@@ -23,6 +23,45 @@ using glm::dmat4;
 
 Transform roundToFloat(const dmat4& m) { return {glm::mat3(glm::dmat3(m)), vec3(m[3])}; }
 
+// EXT_mesh_gpu_instancing: a node with several instances of its mesh.
+
+constexpr const char* kInstancingExtension = "EXT_mesh_gpu_instancing";
+
+// The transforms of the node's instances, relative to the node; one identity if it does not use the
+// extension, or without transforms.
+std::vector<dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& node,
+                                          const std::string& where) {
+  const auto found = node.extensions.find(kInstancingExtension);
+  if (found == node.extensions.end()) return {dmat4(1)};
+  const std::string at = where + "." + kInstancingExtension;
+  const tinygltf::Value& attributes = memberOf(found->second, "attributes");
+  std::map<std::string, int> accessors;
+  for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"})
+    if (memberOf(attributes, name).IsInt()) accessors[name] = intMember(attributes, name);
+  AttributeReader reader(file, accessors, "instances", at + ".");
+  const auto translations = reader.read("TRANSLATION", readVectors<3>);
+  const auto rotations = reader.read("ROTATION", readVectors<4>);
+  const auto scales = reader.read("SCALE", readVectors<3>);
+  if (translations.empty() && rotations.empty() && scales.empty()) return {dmat4(1)};
+
+  const size_t count = reader.count();
+  file.spend(count * sizeof(dmat4));
+  std::vector<dmat4> transforms(count, dmat4(1));
+  for (size_t i = 0; i < count; ++i) {
+    dmat4& m = transforms[i];
+    if (!translations.empty()) m = glm::translate(m, glm::dvec3(translations[i]));
+    if (!rotations.empty()) {
+      const glm::dvec4 r(rotations[i]);
+      const double length = glm::length(r);
+      if (!(length > 0))
+        file.fail("{}.ROTATION: the quaternion of instance {} has length 0", at, i);
+      m *= glm::mat4_cast(glm::dquat(r.w, r.x, r.y, r.z) / length);
+    }
+    if (!scales.empty()) m = glm::scale(m, glm::dvec3(scales[i]));
+  }
+  return transforms;
+}
+
 class InstanceReader {
  public:
   InstanceReader(GltfFile& file, const NodeTree& tree, ModelCache* cache)
@@ -209,56 +248,6 @@ class InstanceReader {
 
 Scene readInstances(GltfFile& file, const NodeTree& tree, ModelCache* cache) {
   return InstanceReader(file, tree, cache).read();
-}
-
-namespace {
-
-constexpr const char* kInstancingExtension = "EXT_mesh_gpu_instancing";
-
-// The attribute of each instance; empty if the node does not have it.
-template <int N>
-std::vector<glm::vec<N, float>> readAttribute(GltfFile& file, const tinygltf::Value& attributes,
-                                              const char* name, size_t& count,
-                                              const std::string& where) {
-  const tinygltf::Value& accessor = memberOf(attributes, name);
-  if (!accessor.IsInt()) return {};
-  const std::string at = where + "." + name;
-  auto elements = readVectors<N>(file, accessor.GetNumberAsInt(), at);
-  if (count == 0) count = elements.size();
-  if (elements.size() != count)
-    file.fail("{}: {} elements for {} instances", at, elements.size(), count);
-  return elements;
-}
-
-}  // namespace
-
-std::vector<glm::dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& node,
-                                               const std::string& where) {
-  const auto found = node.extensions.find(kInstancingExtension);
-  if (found == node.extensions.end()) return {glm::dmat4(1)};
-  const std::string at = where + "." + kInstancingExtension;
-  const tinygltf::Value& attributes = memberOf(found->second, "attributes");
-  size_t count = 0;
-  const auto translations = readAttribute<3>(file, attributes, "TRANSLATION", count, at);
-  const auto rotations = readAttribute<4>(file, attributes, "ROTATION", count, at);
-  const auto scales = readAttribute<3>(file, attributes, "SCALE", count, at);
-  if (translations.empty() && rotations.empty() && scales.empty()) return {glm::dmat4(1)};
-
-  file.spend(count * sizeof(glm::dmat4));
-  std::vector<glm::dmat4> transforms(count, glm::dmat4(1));
-  for (size_t i = 0; i < count; ++i) {
-    glm::dmat4& m = transforms[i];
-    if (!translations.empty()) m = glm::translate(m, glm::dvec3(translations[i]));
-    if (!rotations.empty()) {
-      const glm::dvec4 r(rotations[i]);
-      const double length = glm::length(r);
-      if (!(length > 0))
-        file.fail("{}.ROTATION: the quaternion of instance {} has length 0", at, i);
-      m *= glm::mat4_cast(glm::dquat(r.w, r.x, r.y, r.z) / length);
-    }
-    if (!scales.empty()) m = glm::scale(m, glm::dvec3(scales[i]));
-  }
-  return transforms;
 }
 
 }  // namespace chromeball

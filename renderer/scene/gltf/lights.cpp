@@ -24,6 +24,13 @@ using tinygltf::Value;
 
 constexpr const char* kLightsExtension = "KHR_lights_punctual";
 
+// Element `index` of the file's list of lights of an extension; null if there is none.
+const Value* listedLight(const GltfFile& file, const char* extension, int index) {
+  const Value* root = findExtension(file.model.extensions, extension);
+  if (index < 0 || !root || size_t(index) >= memberOf(*root, "lights").ArrayLen()) return nullptr;
+  return &elementOf(memberOf(*root, "lights"), size_t(index));
+}
+
 double number(const GltfFile& file, const Value& object, const char* key, double fallback,
               double low, double high, const std::string& where) {
   const Value& v = memberOf(object, key);
@@ -48,8 +55,7 @@ Rgb color(const GltfFile& file, const Value& light, const std::string& where) {
 
 PunctualLight readLight(const GltfFile& file, const Value& source, LightUnits units,
                         const std::string& where) {
-  const std::string type =
-      memberOf(source, "type").IsString() ? memberOf(source, "type").Get<std::string>() : "";
+  const std::string type = textMember(source, "type");
   PunctualLight light;
   light.kind = type == "directional" ? Kind::Directional
                : type == "spot"      ? Kind::Spot
@@ -76,16 +82,12 @@ std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, Ligh
   std::vector<PunctualLight> lights;
   for (int index : tree.visible) {
     const auto& extensions = file.model.nodes[size_t(index)].extensions;
-    const auto found = extensions.find(kLightsExtension);
-    if (found == extensions.end() || !memberOf(found->second, "light").IsInt()) continue;
-    const int id = memberOf(found->second, "light").GetNumberAsInt();
-    const auto root = file.model.extensions.find(kLightsExtension);
-    const Value& sources =
-        root == file.model.extensions.end() ? found->second : memberOf(root->second, "lights");
-    if (id < 0 || !sources.IsArray() || size_t(id) >= sources.ArrayLen())
-      file.fail("nodes[{}].{}: lights[{}] does not exist", index, kLightsExtension, id);
-    PunctualLight light =
-        readLight(file, elementOf(sources, size_t(id)), units, fmt::format("lights[{}]", id));
+    const Value* use = findExtension(extensions, kLightsExtension);
+    if (!use || !memberOf(*use, "light").IsInt()) continue;
+    const int id = intMember(*use, "light");
+    const Value* source = listedLight(file, kLightsExtension, id);
+    if (!source) file.fail("nodes[{}].{}: lights[{}] does not exist", index, kLightsExtension, id);
+    PunctualLight light = readLight(file, *source, units, fmt::format("lights[{}]", id));
 
     const glm::dmat4& toWorld = tree.toWorld[size_t(index)];
     light.position = vec3(toWorld[3]);
@@ -106,8 +108,6 @@ std::vector<PunctualLight> readLights(GltfFile& file, const NodeTree& tree, Ligh
 
 namespace {
 
-using tinygltf::Value;
-
 constexpr const char* kEnvironmentExtension = "EXT_lights_image_based";
 constexpr int kFaces = 6, kMaxFace = 2048;
 
@@ -118,14 +118,11 @@ const Value* findLight(const GltfFile& file, std::string& where) {
   const Value* use = findExtension(file.at(file.model.scenes, scene, "scenes", "scene").extensions,
                                    kEnvironmentExtension);
   if (!use) return nullptr;
-  const Value& light = memberOf(*use, "light");
-  const Value* root = findExtension(file.model.extensions, kEnvironmentExtension);
-  const int index = light.IsInt() ? light.GetNumberAsInt() : -1;
+  const int index = intMember(*use, "light");
   where = fmt::format("{}.lights[{}]", kEnvironmentExtension, index);
-  if (index < 0 || !root || !memberOf(*root, "lights").IsArray() ||
-      size_t(index) >= memberOf(*root, "lights").ArrayLen())
-    file.fail("scenes[{}]: {} does not exist", scene, where);
-  return &elementOf(memberOf(*root, "lights"), size_t(index));
+  const Value* light = listedLight(file, kEnvironmentExtension, index);
+  if (!light) file.fail("scenes[{}]: {} does not exist", scene, where);
+  return light;
 }
 
 std::array<int, kFaces> facesOf(const GltfFile& file, const Value& light,

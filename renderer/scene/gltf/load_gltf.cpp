@@ -12,10 +12,10 @@
 #include "scene/gltf/animation.h"
 #include "scene/gltf/compressed_mesh.h"
 #include "scene/gltf/gltf_file.h"
+#include "scene/gltf/gltf_json.h"
 #include "scene/gltf/lights.h"
 #include "scene/gltf/model_cache.h"
 #include "scene/gltf/node_tree.h"
-#include "scene/gltf/variants.h"
 #include "scene/motion.h"
 
 namespace chromeball {
@@ -80,6 +80,71 @@ void scaleMedia(const Transform& placement, Scene& scene) {
 void addMissingNodes(tinygltf::Model& model) {
   if (!model.nodes.empty() || !model.scenes.empty()) return;
   for (size_t i = 0; i < model.meshes.size(); ++i) model.nodes.emplace_back().mesh = int(i);
+}
+
+// KHR_materials_variants: alternative sets of materials for a model.
+
+using tinygltf::Value;
+
+constexpr const char* kVariants = "KHR_materials_variants";
+
+std::vector<std::string> variantNames(const GltfFile& file) {
+  std::vector<std::string> names;
+  const Value* extension = findExtension(file.model.extensions, kVariants);
+  if (!extension) return names;
+  const Value& list = memberOf(*extension, "variants");
+  for (size_t i = 0; i < list.ArrayLen(); ++i)
+    names.push_back(textMember(elementOf(list, i), "name"));
+  return names;
+}
+
+// Warns if the element to which a mapping refers does not exist.
+bool isThere(GltfFile& file, const char* array, int index, size_t count) {
+  if (index >= 0 && size_t(index) < count) return true;
+  file.warnOnce(fmt::format("a mapping refers to {}[{}], which does not exist ({} in the file)",
+                            array, index, count));
+  return false;
+}
+
+// Gives the primitive the material of a mapping if that is for the variant. Returns whether it is.
+bool applyMapping(GltfFile& file, const Value& mapping, int variant, size_t variantCount,
+                  tinygltf::Primitive& primitive) {
+  if (!memberOf(mapping, "material").IsInt()) return false;
+  const Value& variants = memberOf(mapping, "variants");
+  bool isMeant = false;
+  for (size_t i = 0; i < variants.ArrayLen(); ++i) {
+    if (!elementOf(variants, i).IsInt()) continue;
+    const int other = elementOf(variants, i).GetNumberAsInt();
+    isThere(file, "variants", other, variantCount);
+    isMeant |= other == variant;
+  }
+  const int material = intMember(mapping, "material");
+  if (!isThere(file, "materials", material, file.model.materials.size()) || !isMeant) return false;
+  primitive.material = material;
+  return true;
+}
+
+// Gives each primitive its material in the variant.
+void applyVariant(GltfFile& file, const VariantChoice& choice) {
+  const std::vector<std::string> names = variantNames(file);
+  const auto found = std::find(names.begin(), names.end(), choice.name);
+  if (names.empty()) file.fail("has no variants ({})", choice.location);
+  if (found == names.end())
+    file.fail("has no variant `{}` ({}); {}", choice.name, choice.location,
+              didYouMean(choice.name, {names.begin(), names.end()}));
+  const int variant = int(found - names.begin());
+  bool isUsed = false;
+  for (tinygltf::Mesh& mesh : file.model.meshes)
+    for (tinygltf::Primitive& primitive : mesh.primitives) {
+      const Value* extension = findExtension(primitive.extensions, kVariants);
+      if (!extension) continue;
+      const Value& mappings = memberOf(*extension, "mappings");
+      for (size_t i = 0; i < mappings.ArrayLen(); ++i)
+        isUsed |= applyMapping(file, elementOf(mappings, i), variant, names.size(), primitive);
+    }
+  if (!isUsed)
+    file.warnOnce(
+        fmt::format("variant `{}` has no effect: no primitive has a material for it", choice.name));
 }
 
 // The file with its variant applied; from an earlier load if the cache keeps files.

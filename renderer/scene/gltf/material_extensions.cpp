@@ -4,87 +4,97 @@
 #include "scene/gltf/material_reader.h"
 
 namespace chromeball {
-namespace {
 
 using tinygltf::Value;
 
-// Solves exp(-attenuation distance) = color. A channel of 0 would give an infinite attenuation.
-Rgb attenuationOf(const Rgb& color, float distance) {
-  return -glm::log(glm::max(color, Rgb(1e-6f))) / distance;
+float MaterialReader::Extension::number(const char* key, double fallback, double low,
+                                        double high) const {
+  return member(reader.file_, object, key, fallback, low, high, where);
+}
+
+Rgb MaterialReader::Extension::color(const char* key, const Rgb& fallback, double high) const {
+  return vectorMember<3>(reader.file_, object, key, fallback, 0, high, where);
+}
+
+TextureSlot MaterialReader::Extension::texture(const char* key, TexelUse use) const {
+  const Value& info = memberOf(object, key);
+  if (!info.IsObject() || !memberOf(info, "index").IsInt()) return {};
+  tinygltf::ExtensionMap extensions;
+  if (const Value& nested = memberOf(info, "extensions"); nested.IsObject())
+    for (const std::string& name : nested.Keys()) extensions[name] = memberOf(nested, name);
+  return reader.slot(intMember(info, "index"), intMember(info, "texCoord", 0), extensions, use,
+                     where + "." + key);
+}
+
+std::optional<MaterialReader::Extension> MaterialReader::find(
+    const tinygltf::ExtensionMap& extensions, const char* name, const std::string& where) {
+  const Value* object = findExtension(extensions, name);
+  if (!object) return std::nullopt;
+  return Extension{*this, *object, where};
+}
+
+namespace {
+
+using Extension = MaterialReader::Extension;
+
+void readVolume(const Extension& e, ExtendedMaterial& m) {
+  // thicknessFactor only tells whether the mesh is a body; the geometry tells its thickness.
+  m.thinWalled = e.number("thicknessFactor", 0, 0, INFINITY) == 0;
+  if (!memberOf(e.object, "attenuationDistance").IsNumber()) return;
+  // Solves exp(-attenuation distance) = color. A channel of 0 would give an infinite attenuation.
+  const float distance = e.number("attenuationDistance", 0, 1e-6, 1e30);
+  const Rgb color = e.color("attenuationColor", Rgb(1));
+  m.attenuation = -glm::log(glm::max(color, Rgb(1e-6f))) / distance;
+}
+
+void readClearcoat(const Extension& e, ExtendedMaterial& m) {
+  m.clearcoat = e.number("clearcoatFactor", 0);
+  m.clearcoatTexture = e.texture("clearcoatTexture");
+  m.clearcoatRoughness = e.number("clearcoatRoughnessFactor", 0);
+  m.clearcoatRoughnessTexture = e.texture("clearcoatRoughnessTexture");
+  m.clearcoatNormalTexture = e.texture("clearcoatNormalTexture");
+  const Value& normal = memberOf(e.object, "clearcoatNormalTexture");
+  if (normal.IsObject())
+    m.clearcoatNormalScale =
+        Extension{e.reader, normal, e.where + ".clearcoatNormalTexture"}.number("scale", 1, -1e6,
+                                                                                1e6);
+}
+
+void readIridescence(const Extension& e, ExtendedMaterial& m) {
+  m.iridescence = e.number("iridescenceFactor", 0);
+  m.iridescenceTexture = e.texture("iridescenceTexture");
+  m.filmIor = e.number("iridescenceIor", 1.3, 1, 1e3);
+  m.filmMinThickness = e.number("iridescenceThicknessMinimum", 100, 0, 1e6);
+  m.filmMaxThickness = e.number("iridescenceThicknessMaximum", 400, 0, 1e6);
+  m.filmThicknessTexture = e.texture("iridescenceThicknessTexture");
 }
 
 }  // namespace
 
-void MaterialReader::readTransmission(const tinygltf::ExtensionMap& extensions,
-                                      const std::string& where, ExtendedMaterial& m) {
-  if (const Value* e = findExtension(extensions, "KHR_materials_transmission")) {
-    m.transmission = member(file_, *e, "transmissionFactor", 0, 0, 1, where);
-    m.transmissionTexture =
-        slot(memberOf(*e, "transmissionTexture"), false, where + ".transmissionTexture");
-  }
-  if (const Value* e = findExtension(extensions, "KHR_materials_volume")) {
-    // thicknessFactor only tells whether the mesh is a body; the geometry tells its thickness.
-    m.thinWalled = member(file_, *e, "thicknessFactor", 0, 0, INFINITY, where) == 0;
-    const Value& distance = memberOf(*e, "attenuationDistance");
-    if (distance.IsNumber())
-      m.attenuation = attenuationOf(
-          vectorMember<3>(file_, *e, "attenuationColor", vec3(1), 0, 1, where),
-          number(file_, distance.GetNumberAsDouble(), 1e-6, 1e30, where + ".attenuationDistance"));
-  }
-  if (const Value* e = findExtension(extensions, "KHR_materials_dispersion"))
-    m.dispersion = member(file_, *e, "dispersion", 0, 0, 1e3, where);
-}
-
-void MaterialReader::readClearcoat(const Value& e, const std::string& where, ExtendedMaterial& m) {
-  m.clearcoat = member(file_, e, "clearcoatFactor", 0, 0, 1, where);
-  m.clearcoatTexture = slot(memberOf(e, "clearcoatTexture"), false, where + ".clearcoatTexture");
-  m.clearcoatRoughness = member(file_, e, "clearcoatRoughnessFactor", 0, 0, 1, where);
-  m.clearcoatRoughnessTexture =
-      slot(memberOf(e, "clearcoatRoughnessTexture"), false, where + ".clearcoatRoughnessTexture");
-  const Value& normal = memberOf(e, "clearcoatNormalTexture");
-  m.clearcoatNormalTexture = slot(normal, false, where + ".clearcoatNormalTexture");
-  if (normal.IsObject())
-    m.clearcoatNormalScale =
-        member(file_, normal, "scale", 1, -1e6, 1e6, where + ".clearcoatNormalTexture");
-}
-
-void MaterialReader::readSheen(const Value& e, const std::string& where, ExtendedMaterial& m) {
-  m.sheenColor = vectorMember<3>(file_, e, "sheenColorFactor", vec3(0), 0, 1, where);
-  m.sheenColorTexture = slot(memberOf(e, "sheenColorTexture"), true, where + ".sheenColorTexture");
-  m.sheenRoughness = member(file_, e, "sheenRoughnessFactor", 0, 0, 1, where);
-  m.sheenRoughnessTexture =
-      slot(memberOf(e, "sheenRoughnessTexture"), false, where + ".sheenRoughnessTexture");
-}
-
-void MaterialReader::readAnisotropy(const Value& e, const std::string& where, ExtendedMaterial& m) {
-  m.anisotropy = member(file_, e, "anisotropyStrength", 0, 0, 1, where);
-  m.anisotropyRotation = member(file_, e, "anisotropyRotation", 0, -1e6, 1e6, where);
-  m.anisotropyTexture = slot(memberOf(e, "anisotropyTexture"), false, where + ".anisotropyTexture");
-}
-
-void MaterialReader::readIridescence(const Value& e, const std::string& where,
-                                     ExtendedMaterial& m) {
-  m.iridescence = member(file_, e, "iridescenceFactor", 0, 0, 1, where);
-  m.iridescenceTexture =
-      slot(memberOf(e, "iridescenceTexture"), false, where + ".iridescenceTexture");
-  m.filmIor = member(file_, e, "iridescenceIor", 1.3, 1, 1e3, where);
-  m.filmMinThickness = member(file_, e, "iridescenceThicknessMinimum", 100, 0, 1e6, where);
-  m.filmMaxThickness = member(file_, e, "iridescenceThicknessMaximum", 400, 0, 1e6, where);
-  m.filmThicknessTexture = slot(memberOf(e, "iridescenceThicknessTexture"), false,
-                                where + ".iridescenceThicknessTexture");
-}
-
 std::optional<ExtendedMaterial> MaterialReader::readExtensions(
     const tinygltf::ExtensionMap& extensions, const std::string& where) {
+  const auto named = [&](const char* name) { return find(extensions, name, where); };
   ExtendedMaterial m;
-  readTransmission(extensions, where, m);
-  if (const Value* e = findExtension(extensions, "KHR_materials_clearcoat"))
-    readClearcoat(*e, where, m);
-  if (const Value* e = findExtension(extensions, "KHR_materials_sheen")) readSheen(*e, where, m);
-  if (const Value* e = findExtension(extensions, "KHR_materials_anisotropy"))
-    readAnisotropy(*e, where, m);
-  if (const Value* e = findExtension(extensions, "KHR_materials_iridescence"))
-    readIridescence(*e, where, m);
+  if (const auto e = named("KHR_materials_transmission")) {
+    m.transmission = e->number("transmissionFactor", 0);
+    m.transmissionTexture = e->texture("transmissionTexture");
+  }
+  if (const auto e = named("KHR_materials_volume")) readVolume(*e, m);
+  if (const auto e = named("KHR_materials_dispersion"))
+    m.dispersion = e->number("dispersion", 0, 0, 1e3);
+  if (const auto e = named("KHR_materials_clearcoat")) readClearcoat(*e, m);
+  if (const auto e = named("KHR_materials_sheen")) {
+    m.sheenColor = e->color("sheenColorFactor", Rgb(0));
+    m.sheenColorTexture = e->texture("sheenColorTexture", {.srgb = true});
+    m.sheenRoughness = e->number("sheenRoughnessFactor", 0);
+    m.sheenRoughnessTexture = e->texture("sheenRoughnessTexture");
+  }
+  if (const auto e = named("KHR_materials_anisotropy")) {
+    m.anisotropy = e->number("anisotropyStrength", 0);
+    m.anisotropyRotation = e->number("anisotropyRotation", 0, -1e6, 1e6);
+    m.anisotropyTexture = e->texture("anisotropyTexture");
+  }
+  if (const auto e = named("KHR_materials_iridescence")) readIridescence(*e, m);
   if (m.transmission == 0 && m.clearcoat == 0 && isBlack(m.sheenColor) && m.anisotropy == 0 &&
       m.iridescence == 0)
     return std::nullopt;

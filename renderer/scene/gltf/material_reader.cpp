@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "scene/gltf/decode_images.h"
 #include "scene/gltf/gltf_json.h"
 
@@ -51,9 +49,10 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
   m.name = source.name;
   const TexelUse use{.srgb = true, .weightedByAlpha = source.alphaMode != "OPAQUE"};
   constexpr const char* kGlossiness = "KHR_materials_pbrSpecularGlossiness";
-  const Value* glossiness = findExtension(source.extensions, kGlossiness);
+  const auto named = [&](const char* name) { return find(source.extensions, name, where); };
+  const auto glossiness = find(source.extensions, kGlossiness, where + "." + kGlossiness);
   if (glossiness)
-    readSpecularGlossiness(*glossiness, use, where + "." + kGlossiness, m);
+    readSpecularGlossiness(*glossiness, use, m);
   else
     readBaseColor(source, use, where, m);
   m.doubleSided = source.doubleSided;
@@ -64,7 +63,7 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
     m.alphaMode = AlphaMode::Blend;
   else if (source.alphaMode != "OPAQUE")
     file_.fail("{}.alphaMode: \"{}\" is not OPAQUE, MASK or BLEND", where, source.alphaMode);
-  if (findExtension(source.extensions, "KHR_materials_unlit")) {
+  if (named("KHR_materials_unlit")) {
     m.unlit = true;
     return m;
   }
@@ -74,34 +73,34 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
     m.metallic = number(file_, pbr.metallicFactor, 0, 1, where + ".metallicFactor");
     m.roughness = number(file_, pbr.roughnessFactor, 0, 1, where + ".roughnessFactor");
     m.metallicRoughnessTexture =
-        slot(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.texCoord,
-             pbr.metallicRoughnessTexture.extensions, {}, where + ".metallicRoughnessTexture");
+        slot(pbr.metallicRoughnessTexture, {}, where + ".metallicRoughnessTexture");
   }
   m.normalScale = number(file_, source.normalTexture.scale, -1e6, 1e6, where + ".normalTexture");
-  m.normalTexture = slot(source.normalTexture.index, source.normalTexture.texCoord,
-                         source.normalTexture.extensions, {}, where + ".normalTexture");
+  m.normalTexture = slot(source.normalTexture, {}, where + ".normalTexture");
 
   float strength = 1;
-  if (const Value* e = findExtension(source.extensions, "KHR_materials_emissive_strength"))
-    strength = member(file_, *e, "emissiveStrength", 1, 0, 1e30, where);
+  if (const auto e = named("KHR_materials_emissive_strength"))
+    strength = e->number("emissiveStrength", 1, 0, 1e30);
   for (int i = 0; i < 3; ++i)
     m.emission[i] =
         strength * number(file_, source.emissiveFactor[size_t(i)], 0, 1, where + ".emissiveFactor");
   if (!isBlack(m.emission))
-    m.emissiveTexture =
-        slot(source.emissiveTexture.index, source.emissiveTexture.texCoord,
-             source.emissiveTexture.extensions, {.srgb = true}, where + ".emissiveTexture");
+    m.emissiveTexture = slot(source.emissiveTexture, {.srgb = true}, where + ".emissiveTexture");
 
-  if (const Value* e = findExtension(source.extensions, "KHR_materials_ior"); e && !glossiness) {
-    m.ior = member(file_, *e, "ior", 1.5, 0, 1e6, where);
+  if (const auto e = named("KHR_materials_ior"); e && !glossiness) {
+    m.ior = e->number("ior", 1.5, 0, 1e6);
     if (m.ior != 0 && m.ior < 1) {
       file_.warnOnce(
           fmt::format("{}: {} is clamped to the range 1 to 1e+06, or 0", where + ".ior", m.ior));
       m.ior = 1;
     }
   }
-  if (const Value* e = findExtension(source.extensions, "KHR_materials_specular"); e && !glossiness)
-    readSpecular(*e, where, m);
+  if (const auto e = named("KHR_materials_specular"); e && !glossiness) {
+    m.specular = e->number("specularFactor", 1);
+    m.specularColor = e->color("specularColorFactor", Rgb(1), INFINITY);
+    m.specularTexture = e->texture("specularTexture");
+    m.specularColorTexture = e->texture("specularColorTexture", {.srgb = true});
+  }
   m.extended = readExtensions(source.extensions, where);
   if (m.extended && m.ior == 0) m.extended->transmission = 0;  // infinite index: reflects all light
   return m;
@@ -113,43 +112,20 @@ void MaterialReader::readBaseColor(const tinygltf::Material& source, TexelUse us
   for (int i = 0; i < 4; ++i)
     m.baseColor[i] =
         number(file_, pbr.baseColorFactor[size_t(i)], 0, 1, where + ".baseColorFactor");
-  m.baseColorTexture = slot(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
-                            pbr.baseColorTexture.extensions, use, where + ".baseColorTexture");
-}
-
-void MaterialReader::readSpecular(const Value& extension, const std::string& where, Material& m) {
-  m.specular = member(file_, extension, "specularFactor", 1, 0, 1, where);
-  m.specularColor =
-      vectorMember<3>(file_, extension, "specularColorFactor", vec3(1), 0, INFINITY, where);
-  m.specularTexture =
-      slot(memberOf(extension, "specularTexture"), false, where + ".specularTexture");
-  m.specularColorTexture =
-      slot(memberOf(extension, "specularColorTexture"), true, where + ".specularColorTexture");
+  m.baseColorTexture = slot(pbr.baseColorTexture, use, where + ".baseColorTexture");
 }
 
 // The specular colour is F0 itself, as with an infinite index of refraction; its texture's alpha is
 // the glossiness.
-void MaterialReader::readSpecularGlossiness(const Value& e, TexelUse diffuse,
-                                            const std::string& where, Material& m) {
+void MaterialReader::readSpecularGlossiness(const Extension& e, TexelUse diffuse, Material& m) {
   m.specularGlossiness = true;
   m.ior = 0;
   m.metallic = 0;
-  m.baseColor = vectorMember<4>(file_, e, "diffuseFactor", vec4(1), 0, 1, where);
-  m.baseColorTexture = slot(memberOf(e, "diffuseTexture"), diffuse, where + ".diffuseTexture");
-  m.specularColor = vectorMember<3>(file_, e, "specularFactor", vec3(1), 0, 1, where);
-  m.roughness = 1 - member(file_, e, "glossinessFactor", 1, 0, 1, where);
-  m.specularColorTexture =
-      slot(memberOf(e, "specularGlossinessTexture"), true, where + ".specularGlossinessTexture");
-}
-
-TextureSlot MaterialReader::slot(const Value& textureInfo, TexelUse use, const std::string& where) {
-  if (!textureInfo.IsObject() || !memberOf(textureInfo, "index").IsInt()) return {};
-  const Value& set = memberOf(textureInfo, "texCoord");
-  tinygltf::ExtensionMap extensions;
-  if (const Value& nested = memberOf(textureInfo, "extensions"); nested.IsObject())
-    for (const std::string& key : nested.Keys()) extensions[key] = memberOf(nested, key);
-  return slot(memberOf(textureInfo, "index").GetNumberAsInt(),
-              set.IsInt() ? set.GetNumberAsInt() : 0, extensions, use, where);
+  m.baseColor = vectorMember<4>(e.reader.file_, e.object, "diffuseFactor", vec4(1), 0, 1, e.where);
+  m.baseColorTexture = e.texture("diffuseTexture", diffuse);
+  m.specularColor = e.color("specularFactor", Rgb(1));
+  m.roughness = 1 - e.number("glossinessFactor", 1);
+  m.specularColorTexture = e.texture("specularGlossinessTexture", {.srgb = true});
 }
 
 TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::ExtensionMap& extensions,
@@ -167,7 +143,7 @@ TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::Extension
     s.uvRow0 = vec2(c, sn) * scale;
     s.uvRow1 = vec2(-sn, c) * scale;
     s.uvOffset = vectorMember<2>(file_, *e, "offset", vec2(0), -INFINITY, INFINITY, at);
-    if (memberOf(*e, "texCoord").IsInt()) s.uvSet = memberOf(*e, "texCoord").GetNumberAsInt();
+    s.uvSet = intMember(*e, "texCoord", uvSet);
   }
   if (s.uvSet < 0 || s.uvSet > kMaxUvSet)
     file_.fail("{}: texCoord {} is not in the range 0 to {}", where, s.uvSet, kMaxUvSet);
@@ -178,7 +154,7 @@ int MaterialReader::texture(int index, TexelUse use, const std::string& where) {
   const tinygltf::Texture& source = file_.at(file_.model.textures, index, "textures", where);
   int image = source.source;
   if (const Value* e = findExtension(source.extensions, "EXT_texture_webp"))
-    image = memberOf(*e, "source").IsInt() ? memberOf(*e, "source").GetNumberAsInt() : -1;
+    image = intMember(*e, "source");
   if (image == -1 && findExtension(source.extensions, "KHR_texture_basisu"))
     file_.fail(
         "textures[{}]: has only a KTX2 image (KHR_texture_basisu), which is not supported; "

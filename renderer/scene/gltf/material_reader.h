@@ -14,6 +14,10 @@
 
 namespace chromeball {
 
+struct TexelUse {
+  bool srgb = false, weightedByAlpha = false;  // see Texture
+};
+
 // Converts on demand, so that unused materials and images cost nothing.
 class MaterialReader {
  public:
@@ -28,38 +32,38 @@ class MaterialReader {
   // scene.
   void moveInto(Scene& scene);
 
+  // The object of a material's extension, with its place in the file.
+  struct Extension {
+    MaterialReader& reader;
+    const tinygltf::Value& object;
+    std::string where;
+
+    float number(const char* key, double fallback, double low = 0, double high = 1) const;
+    Rgb color(const char* key, const Rgb& fallback, double high = 1) const;
+    TextureSlot texture(const char* key, TexelUse use = {}) const;
+  };
+
  private:
   using TextureKey = std::tuple<int, Wrap, Wrap, Filter, bool, bool>;
-  struct TexelUse {
-    bool srgb = false, weightedByAlpha = false;  // see Texture
-  };
+
+  std::optional<Extension> find(const tinygltf::ExtensionMap& extensions, const char* name,
+                                const std::string& where);
 
   Material convert(const tinygltf::Material& source, const std::string& where);
   TextureSlot slot(int texture, int uvSet, const tinygltf::ExtensionMap& extensions, TexelUse use,
                    const std::string& where);
-  TextureSlot slot(const tinygltf::Value& textureInfo, TexelUse use, const std::string& where);
-  TextureSlot slot(const tinygltf::Value& textureInfo, bool srgb, const std::string& where) {
-    return slot(textureInfo, TexelUse{.srgb = srgb}, where);
+  template <class Info>  // of tinygltf
+  TextureSlot slot(const Info& info, TexelUse use, const std::string& where) {
+    return slot(info.index, info.texCoord, info.extensions, use, where);
   }
   int texture(int index, TexelUse use, const std::string& where);
   TexelGrid* grid(int image);
   void readBaseColor(const tinygltf::Material& source, TexelUse use, const std::string& where,
                      Material& m);
-  void readSpecularGlossiness(const tinygltf::Value& extension, TexelUse diffuse,
-                              const std::string& where, Material& m);
-  void readSpecular(const tinygltf::Value& extension, const std::string& where, Material& m);
+  static void readSpecularGlossiness(const Extension& e, TexelUse diffuse, Material& m);
   // nullopt if the extensions have no effect.
   std::optional<ExtendedMaterial> readExtensions(const tinygltf::ExtensionMap& extensions,
                                                  const std::string& where);
-  void readTransmission(const tinygltf::ExtensionMap& extensions, const std::string& where,
-                        ExtendedMaterial& m);
-  void readClearcoat(const tinygltf::Value& extension, const std::string& where,
-                     ExtendedMaterial& m);
-  void readSheen(const tinygltf::Value& extension, const std::string& where, ExtendedMaterial& m);
-  void readAnisotropy(const tinygltf::Value& extension, const std::string& where,
-                      ExtendedMaterial& m);
-  void readIridescence(const tinygltf::Value& extension, const std::string& where,
-                       ExtendedMaterial& m);
 
   GltfFile& file_;
   TexelCache* cache_;

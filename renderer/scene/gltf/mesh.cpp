@@ -11,7 +11,6 @@
 #include "scene/builder/complete_mesh.h"
 #include "scene/extended_surface.h"
 #include "scene/gltf/accessor.h"
-#include "scene/gltf/animation.h"
 #include "scene/mesh.h"
 
 namespace chromeball {
@@ -64,33 +63,6 @@ void checkFinite(const GltfFile& file, const std::vector<vec3>& positions,
   for (size_t i = 0; i < positions.size(); ++i)
     if (!isFinite(positions[i])) file.fail("{}: the position of vertex {} is not finite", where, i);
 }
-
-// Reads the vertex attributes of a primitive. Throws if their lengths differ.
-class AttributeReader {
- public:
-  AttributeReader(GltfFile& file, const tinygltf::Primitive& primitive, const std::string& where)
-      : file_(file), primitive_(primitive), where_(where) {}
-
-  // Reads the attribute by `readArray` (from accessor.h); empty if the primitive does not have it.
-  template <class T>
-  std::vector<T> read(const std::string& name,
-                      std::vector<T> (*readArray)(GltfFile&, int, const std::string&)) {
-    const auto found = primitive_.attributes.find(name);
-    if (found == primitive_.attributes.end()) return {};
-    const std::string at = where_ + ".attributes." + name;
-    std::vector<T> array = readArray(file_, found->second, at);
-    if (vertexCount_ == 0) vertexCount_ = array.size();
-    if (array.size() != vertexCount_)
-      file_.fail("{}: {} elements for {} vertices", at, array.size(), vertexCount_);
-    return array;
-  }
-
- private:
-  GltfFile& file_;
-  const tinygltf::Primitive& primitive_;
-  const std::string& where_;
-  size_t vertexCount_ = 0;
-};
 
 void readTextureCoordinates(GltfFile& file, AttributeReader& attributes, const Material& material,
                             Mesh& mesh) {
@@ -164,7 +136,7 @@ MeshRecipe recipeOf(const tinygltf::Primitive& primitive, const Pose& pose,
 std::optional<Mesh> readPrimitive(GltfFile& file, const tinygltf::Primitive& primitive,
                                   const Pose& pose, const std::string& where,
                                   const Material& material) {
-  AttributeReader attributes(file, primitive, where);
+  AttributeReader attributes(file, primitive.attributes, "vertices", where + ".attributes.");
   Mesh mesh;
   mesh.positions = attributes.read("POSITION", readVectors<3>);
   mesh.triangles = readAllTriangles(file, primitive, mesh.positions.size(), where);

@@ -35,11 +35,6 @@ size_t sizeMember(const GltfFile& file, const Value& object, const char* key, bo
   return size_t(number);
 }
 
-std::string textMember(const Value& object, const char* key, const char* fallback) {
-  const Value& v = memberOf(object, key);
-  return v.IsString() ? v.Get<std::string>() : fallback;
-}
-
 Compressed readExtension(const GltfFile& file, const Value& extension, const std::string& where) {
   Compressed c;
   c.bytes = file.bytes(int(sizeMember(file, extension, "buffer", true, where)),
@@ -47,7 +42,7 @@ Compressed readExtension(const GltfFile& file, const Value& extension, const std
                        sizeMember(file, extension, "byteLength", true, where), where);
   c.count = sizeMember(file, extension, "count", true, where);
   c.stride = sizeMember(file, extension, "byteStride", true, where);
-  c.mode = textMember(extension, "mode", "");
+  c.mode = textMember(extension, "mode");
   c.filter = textMember(extension, "filter", "NONE");
   return c;
 }

@@ -17,10 +17,6 @@
 
 namespace chromeball {
 
-// Decoded images that several loads of one model share, as for the frames of an animation.
-
-using MipChain = std::shared_ptr<const std::vector<TexelGrid>>;
-
 struct TexelCache {
   double limit = INFINITY;          // bytes; more texels in memory are refused
   double memory = INFINITY;         // bytes for texels in memory; with more, they go to `file`
@@ -31,8 +27,6 @@ struct TexelCache {
   // Keyed by image, and by Texture::srgb and Texture::weightedByAlpha.
   std::map<std::tuple<const TexelGrid*, bool, bool>, MipChain> chains;
 };
-
-// Which meshes of a glTF file are equal.
 
 // Everything that determines an unskinned mesh: primitives with equal recipes have equal meshes.
 struct MeshRecipe {
@@ -46,8 +40,6 @@ struct MeshRecipe {
 
   auto operator<=>(const MeshRecipe&) const = default;
 };
-
-// Meshes that several loads of one model share, as for the frames of an animation.
 
 // Everything that determines a mesh of a scene.
 struct MeshKey {

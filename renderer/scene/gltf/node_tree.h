@@ -24,18 +24,9 @@ struct NodeTree {
 // finite.
 NodeTree readNodes(const GltfFile& file, const Transform& placement, const glm::dvec3& origin);
 
-// The meshes, materials and transforms of a glTF file's nodes.
-
 // A scene with the meshes, instances, materials and textures of the visible nodes in the tree.
 // Geometry that several primitives share is stored once. `cache` receives the data read; null:
 // none.
 Scene readInstances(GltfFile& file, const NodeTree& tree, ModelCache* cache);
-
-// EXT_mesh_gpu_instancing: a node with several instances of its mesh.
-
-// The transforms of the node's instances, relative to the node; one identity if it does not use the
-// extension, or without transforms.
-std::vector<glm::dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& node,
-                                               const std::string& where);
 
 }  // namespace chromeball

@@ -6,20 +6,17 @@
 
 namespace chromeball {
 
-// A kind of object; `integer`, `size`, `number`, `boolean` or `string`; `T[]`, an array of T; or
-// `T{}`, an object with any members of type T. An `integer` is an int, a `size` a size_t of
-// tinygltf.
-struct MemberType {
-  std::string_view name, type;
-};
+// The members are written "name:type name:type". A type is a kind of object; `integer`, `size`,
+// `number`, `boolean` or `string`; `T[]`, an array of T; or `T{}`, an object with any members of
+// type T. An `integer` is an int, a `size` a size_t of tinygltf. Extensions are kinds too: those
+// that have a row here are supported.
 struct ObjectType {
-  static constexpr size_t kMostMembers = 17;
-  std::string_view kind;
-  MemberType members[kMostMembers];
+  std::string_view kind, members;
 };
 
 // Null if there is none.
 const ObjectType* findObjectType(std::string_view kind);
-const MemberType* findMemberType(const ObjectType& object, std::string_view name);
+// The type of a member; empty if it is none that we read.
+std::string_view memberTypeOf(const ObjectType& object, std::string_view name);
 
 }  // namespace chromeball

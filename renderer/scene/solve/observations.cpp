@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <map>
-#include <span>
 #include <string_view>
 #include <tuple>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "scene/camera.h"
 
 namespace chromeball {
 namespace {

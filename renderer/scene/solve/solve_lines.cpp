@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 
 #include <array>
-#include <span>
 
 #include "base/error.h"
 #include "math/rotation.h"
@@ -34,62 +33,52 @@ class LineProblem {
   LineProblem(const std::vector<CentredLine>& lines, bool findsFocalLength)
       : lines_(lines), findsFocalLength_(findsFocalLength) {}
 
-  int unknowns() const { return findsFocalLength_ ? 4 : 3; }
-
   // The direction in which the image of a point at the line's middle moves if the point moves along
-  // the axis; of any length.
-  static glm::dvec2 flow(const LineView& view, const CentredLine& line);
+  // the axis, of any length. The vanishing point of the direction d is f (d.x, d.y) / -d.z; minus
+  // the middle, times -d.z.
+  static dvec2 flow(const LineView& view, const CentredLine& line) {
+    const dvec3& d = view.rotation[line.axis];
+    return view.focalLength * dvec2(d) + d.z * line.middle;
+  }
 
-  // The residuals are signed distances of the second ends. The unknowns: rotation about the
-  // camera's axes, logarithm of the focal length.
-  bool residuals(const LineView& view, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian) const;
-  LineView moved(const LineView& view, const Eigen::VectorXd& step) const;
+  // The residuals are signed distances of the second ends. With the unit flow e, one is
+  // cross(half, e); it changes by cross(half, n) dot(n, flow's change) / |flow| with n
+  // perpendicular to e. The unknowns: rotation about the camera's axes, logarithm of the focal
+  // length.
+  bool residuals(const LineView& view, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian) const {
+    residual.resize(Eigen::Index(lines_.size()));
+    if (jacobian) jacobian->resize(residual.size(), findsFocalLength_ ? 4 : 3);
+    const double f = view.focalLength;
+    for (size_t i = 0; i < lines_.size(); ++i) {
+      const CentredLine& line = lines_[i];
+      const dvec2 along = flow(view, line);
+      const double length = glm::length(along);
+      if (!(length > 0) || !std::isfinite(length)) return false;
+      const dvec2 e = along / length, n(-e.y, e.x);
+      const Eigen::Index row = Eigen::Index(i);
+      residual[row] = cross(line.half, e);
+      if (!jacobian) continue;
+      const double byFlow = cross(line.half, n) / length;
+      const dvec3 d = view.rotation[line.axis];
+      const dvec3 byRotation = glm::cross(d, dvec3(f * n, glm::dot(n, line.middle)));
+      for (int k = 0; k < 3; ++k) (*jacobian)(row, k) = byFlow * byRotation[k];
+      if (findsFocalLength_) (*jacobian)(row, 3) = byFlow * f * glm::dot(n, dvec2(d));
+    }
+    return true;
+  }
+
+  LineView moved(const LineView& view, const Eigen::VectorXd& step) const {
+    constexpr double kMost = 2;
+    LineView moved = view;
+    moved.rotation = rotationBy({step[0], step[1], step[2]}) * view.rotation;
+    if (findsFocalLength_) moved.focalLength *= std::exp(std::clamp(step[3], -kMost, kMost));
+    return moved;
+  }
 
  private:
   const std::vector<CentredLine>& lines_;
   bool findsFocalLength_;
 };
-
-double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-// The vanishing point of the direction d is f (d.x, d.y) / -d.z; minus the middle, times -d.z.
-dvec2 LineProblem::flow(const LineView& view, const CentredLine& line) {
-  const dvec3& d = view.rotation[line.axis];
-  return view.focalLength * dvec2(d) + d.z * line.middle;
-}
-
-// With the unit flow e, the residual is cross(half, e); it changes by cross(half, n) dot(n, flow's
-// change) / |flow| with n perpendicular to e.
-bool LineProblem::residuals(const LineView& view, Eigen::VectorXd& residual,
-                            Eigen::MatrixXd* jacobian) const {
-  residual.resize(Eigen::Index(lines_.size()));
-  if (jacobian) jacobian->resize(residual.size(), unknowns());
-  const double f = view.focalLength;
-  for (size_t i = 0; i < lines_.size(); ++i) {
-    const CentredLine& line = lines_[i];
-    const dvec2 along = flow(view, line);
-    const double length = glm::length(along);
-    if (!(length > 0) || !std::isfinite(length)) return false;
-    const dvec2 e = along / length, n(-e.y, e.x);
-    const Eigen::Index row = Eigen::Index(i);
-    residual[row] = cross(line.half, e);
-    if (!jacobian) continue;
-    const double byFlow = cross(line.half, n) / length;
-    const dvec3 d = view.rotation[line.axis];
-    const dvec3 byRotation = glm::cross(d, dvec3(f * n, glm::dot(n, line.middle)));
-    for (int k = 0; k < 3; ++k) (*jacobian)(row, k) = byFlow * byRotation[k];
-    if (findsFocalLength_) (*jacobian)(row, 3) = byFlow * f * glm::dot(n, dvec2(d));
-  }
-  return true;
-}
-
-LineView LineProblem::moved(const LineView& view, const Eigen::VectorXd& step) const {
-  constexpr double kMost = 2;
-  LineView moved = view;
-  moved.rotation = rotationBy({step[0], step[1], step[2]}) * view.rotation;
-  if (findsFocalLength_) moved.focalLength *= std::exp(std::clamp(step[3], -kMost, kMost));
-  return moved;
-}
 
 using glm::dmat3;
 using FoundByLines = Minimum<LineView>;
@@ -242,7 +231,5 @@ CameraFit solveByLines(const std::vector<ObservedLine>& observed, const CameraKn
   for (const double distance : residual) fit.distances.push_back(std::abs(distance));
   return fit;
 }
-
-using glm::dvec2, glm::dvec3;
 
 }  // namespace chromeball

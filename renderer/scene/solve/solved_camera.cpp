@@ -9,8 +9,6 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/json_text.h"
-#include "scene/camera.h"
-#include "scene/solve/observations.h"
 
 namespace chromeball {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "base/message.h"
@@ -57,8 +56,6 @@ struct CameraFit {
 double focalLengthOfFov(const ImageSize& size, double fov);
 double focalLengthOf35mm(const ImageSize& size, double millimetres);
 double equivalentOn35mm(const ImageSize& size, double focalLength);  // its inverse
-
-// Signs that a camera was found from wrong observations.
 
 // Warnings about observations that no camera fits, that two cameras fit, or that leave the field of
 // view uncertain.
