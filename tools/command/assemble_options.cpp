@@ -22,16 +22,16 @@ void addBallOptions(Command command, AssembleArguments& arguments) {
   command.addOption("--reflectivity", arguments.reflectivity,
                     "X or R,G,B of the ball, as `probe reflectivity` measures it; else 1");
   command
-      .addOption("--ball-ior", arguments.ballIor,
-                 "N,K: the reflectivity changes with the angle as that of a metal of refractive "
-                 "index N + iK: chrome 3.18,3.31. Without --reflectivity, also its value at the "
-                 "centre")
+      .addOption(
+          "--ball-ior", arguments.ballIor,
+          "N,K: the reflectivity changes with the angle as that of a metal of refractive index N + "
+          "iK: chrome 3.18,3.31. Without --reflectivity, also its value at the centre")
       .excludes(command.addFlag("--schlick", arguments.schlick,
                                 "the reflectivity rises to 1 at the rim, by Schlick's "
                                 "approximation: a rendered ball of glTF"));
-  command.addOption("--camera-disc", arguments.cameraDisc,
-                    "degrees around the camera's reflection that other photographs replace; else "
-                    "15");
+  command.addOption(
+      "--camera-disc", arguments.cameraDisc,
+      "degrees around the camera's reflection that other photographs replace; else 15");
 }
 
 // "X", for all channels, or "R,G,B".
@@ -80,15 +80,13 @@ bool isColor(const std::string& text) {
 }  // namespace
 
 void addAssembleOptions(Command command, AssembleArguments& arguments) {
-  command.addOption("PHOTO", arguments.photographs, "linear images, up to 16").required();
-  command.addOption("-o,--output", arguments.out, "the image to write: .exr, .hdr, .pfm or .png")
-      .required();
+  command.addRequired("PHOTO", arguments.photographs, "linear images, up to 16");
+  command.addRequired("-o,--output", arguments.out, "the image to write: .exr, .hdr, .pfm or .png");
   command
-      .addOption(
-          "--azimuth", arguments.azimuths,
-          "AZIMUTH[:ELEVATION],...: where each camera is, in degrees, seen from the ball: 0 "
-          "is +Z, 90 is +X. A lens looks away from there: 0 towards -Z, 90 towards -X, 0:-90 "
-          "straight up. One photograph: 0 if left out")
+      .addOption("--azimuth", arguments.azimuths,
+                 "AZIMUTH[:ELEVATION],...: where each camera is, in degrees, seen from the ball: 0 "
+                 "is +Z, 90 is +X. A lens looks away from there: 0 towards -Z, 90 towards -X, "
+                 "0:-90 straight up. One photograph: 0 if left out")
       .onePerName();
   command
       .addOption("--circle", arguments.circles,
@@ -109,9 +107,9 @@ void addAssembleOptions(Command command, AssembleArguments& arguments) {
                   "do not match the exposures of the photographs");
   command.addFlag("--keep-azimuth", arguments.keepAzimuth,
                   "do not correct the azimuths by up to 5 degrees");
-  command.addOption("--fill", arguments.fill,
-                    "what blind directions get: inpaint (smooth), black, R,G,B or the file of a "
-                    "probe");
+  command.addOption(
+      "--fill", arguments.fill,
+      "what blind directions get: inpaint (smooth), black, R,G,B or the file of a probe");
   command.addOption("--to", arguments.to, "the mapping of the output, as of `probe convert`");
   command.addOption("--size", arguments.size, "WIDTHxHEIGHT; else the size that keeps the detail");
   command.addOption("--preview", arguments.preview,

@@ -119,7 +119,7 @@ std::vector<AssemblyPhotograph> loadPhotographs(const AssembleArguments& argumen
     photograph.image = std::move(loaded.image);
     if (!masks.empty())
       photograph.mask = loadMask(masks[i], photograph.image, photograph.file, loaded.messages);
-    print(loaded.messages, false);
+    print(loaded.messages);
     setCircle(circles[i], arguments.isFisheye(), photograph);
   }
   return photographs;

@@ -100,9 +100,8 @@ class Bake {
     describe(file, baked);
     file.extras["chromeball"]["lightmap"] = path.filename().string();
     file.extras["chromeball"]["texelsPerMetre"] = atlas.density;
-    print(
-        writeImage(path, OutputImage{{{"", "RGB", map.light}}, {{"baked", options_.what}}, {}, {}}),
-        false);
+    print(writeImage(path,
+                     OutputImage{{{"", "RGB", map.light}}, {{"baked", options_.what}}, {}, {}}));
     writeBaked(options_.output, loaded_.scene, lightmappedGeometry(meshes_, charts, atlas),
                pageOf(map, file), file);
     summary_ =
@@ -134,9 +133,8 @@ class Bake {
     BakeResult baked = bake(*prepared_.world, *prepared_.lighting, meshes_, points, settings_,
                             [&](double fraction) { bar.update(fraction); });
     if (baked.invalid.total() > 0)
-      warn(fmt::format("{} invalid samples were left out; the first is of {} {}, {}",
-                       baked.invalid.total(), options_.toVertices() ? "vertex" : "texel",
-                       baked.invalid.x, baked.invalid.y));
+      warn("{} invalid samples were left out; the first is of {} {}, {}", baked.invalid.total(),
+           options_.toVertices() ? "vertex" : "texel", baked.invalid.x, baked.invalid.y);
     return baked;
   }
 
@@ -177,20 +175,19 @@ class Bake {
                                       sizeof(PointResult) + 2 * sizeof(Rgb) + sizeof(int);
     const double needed = kBytesPerTexel * size * size + estimateMemory(loaded_).peak;
     if (needed > memoryLimit(loaded_.description))
-      throw InputError(
-          fmt::format("{}: a page of {} x {} texels takes {:.3g} GB of memory with all "
-                      "else; the limit is {:.3g} GB",
-                      options_.texel ? "--texel" : "--size", size, size, 1e-9 * needed,
-                      1e-9 * memoryLimit(loaded_.description)),
-          Remedy{"memory", {}});
+      throw InputError(fmt::format("{}: a page of {} x {} texels takes {:.3g} GB of memory with "
+                                   "all else; the limit is {:.3g} GB",
+                                   options_.texel ? "--texel" : "--size", size, size, 1e-9 * needed,
+                                   1e-9 * memoryLimit(loaded_.description)),
+                       Remedy{"memory", {}});
   }
 
   void report() const {
     for (const Instance& instance : loaded_.scene.instances)
       if (const Material& m = loaded_.scene.materials[size_t(instance.material)];
           m.extended && bakedFile().look != BakedLook::Unlit) {
-        warn(fmt::format("{}: material `{}` has extensions that the baked model lacks",
-                         options_.output, m.name));
+        warn("{}: material `{}` has extensions that the baked model lacks", options_.output,
+             m.name);
         break;
       }
     if (!options_.quiet())
@@ -219,11 +216,9 @@ void run(const BakeOptions& options) {
 }  // namespace
 
 void addBakeCommand(Command app) {
-  const auto options = std::make_shared<BakeOptions>();
-  Command command =
-      app.addCommand("bake", "Bake light into a lightmap or vertex colours, for real-time viewers");
-  addBakeOptions(command, *options);
-  command.callback([options] { run(*options); });
+  auto [command, a] = app.addCommand<BakeOptions>(
+      "bake", "Bake light into a lightmap or vertex colours, for real-time viewers", run);
+  addBakeOptions(command, a);
 }
 
 }  // namespace chromeball

@@ -61,24 +61,20 @@ void checkBakeOptions(const BakeOptions& a) {
 
 void addBakeOptions(Command command, BakeOptions& options) {
   addSceneOptions(command, options, SceneCommand::Bake);
-  command
-      .addOption("-o,--output", options.output,
-                 "the model to write: .glb or .gltf; a lightmap is also written as .exr beside it")
-      .required();
-  command
-      .addOption("--what", options.what,
-                 "irradiance, ambient-occlusion, or radiance along the normal")
-      .showsDefault();
-  command.addOption("--to", options.to, "lightmap (TEXCOORD_1) or vertices (COLOR_0)")
-      .showsDefault();
+  command.addRequired(
+      "-o,--output", options.output,
+      "the model to write: .glb or .gltf; a lightmap is also written as .exr beside it");
+  command.addWithDefault("--what", options.what,
+                         "irradiance, ambient-occlusion, or radiance along the normal");
+  command.addWithDefault("--to", options.to, "lightmap (TEXCOORD_1) or vertices (COLOR_0)");
   command.addOption("--size", options.size,
                     "of the lightmap, in texels along an edge, up to 16384; 1024 by default");
   command.addOption("--texel", options.texel,
                     "in place of --size: metres along the edge of a texel");
   command.addOption("--padding", options.padding, "texels around each chart; 4 by default");
   command.addOption("--scale", options.scale,
-                    "the light that the file's white stands for; by default a power of two "
-                    "that clips only what emits");
+                    "the light that the file's white stands for; by default a power of two that "
+                    "clips only what emits");
   Option denoises =
       command.addFlag("--denoise", options.denoises, "remove noise from lightmaps: the default");
   command.addFlag("--no-denoise", options.keepsNoise, "do not").excludes(denoises);

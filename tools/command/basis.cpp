@@ -37,33 +37,29 @@ void run(const BasisArguments& a) {
 }  // namespace
 
 void addBasisCommand(Command app) {
-  const auto arguments = std::make_shared<BasisArguments>();
-  Command command = app.addCommand(
-      "basis",
-      "Render a light stage, a scene under light from each of many directions; or the same "
-      "at a model's vertices");
-  addSceneOptions(command, *arguments, SceneCommand::Basis);
-  command.addOption("--at", arguments->at, "pixels, or vertices: precomputed radiance transfer")
-      .showsDefault();
-  command.addOption("--directions", arguments->directions,
+  auto [command, a] =
+      app.addCommand<BasisArguments>("basis",
+                                     "Render a light stage, a scene under light from each of many "
+                                     "directions; or the same at a model's vertices",
+                                     run);
+  addSceneOptions(command, a, SceneCommand::Basis);
+  command.addWithDefault("--at", a.at, "pixels, or vertices: precomputed radiance transfer");
+  command.addOption("--directions", a.directions,
                     "of pixels: lat-long:WxH or cube:N (boxes of a map), icosphere:SUBDIVISIONS "
                     "(triangles), sh:ORDER (spherical harmonics); else lat-long:32x16");
-  command.addOption("--basis", arguments->functions,
-                    "of vertices: sh:ORDER (spherical harmonics) or haar:N (wavelets on a cube "
-                    "of N x N cells a face); else sh:4");
-  command.addFlag("--glossy", arguments->isGlossy,
-                  "of vertices: matrices for surfaces that look different from each side; "
-                  "compressed");
-  command.addOption("--clusters", arguments->clusters, "of matrices with principal components: 16")
+  command.addOption("--basis", a.functions,
+                    "of vertices: sh:ORDER (spherical harmonics) or haar:N (wavelets on a cube of "
+                    "N x N cells a face); else sh:4");
+  command.addFlag(
+      "--glossy", a.isGlossy,
+      "of vertices: matrices for surfaces that look different from each side; compressed");
+  command.addOption("--clusters", a.clusters, "of matrices with principal components: 16")
       .inRange(1, 1024);
-  command.addOption("--vectors", arguments->vectors, "of each cluster: 8").inRange(0, 256);
-  command.addFlag("--half", arguments->halves,
+  command.addOption("--vectors", a.vectors, "of each cluster: 8").inRange(0, 256);
+  command.addFlag("--half", a.halves,
                   "write 16 bits per number: half the file, to 0.05% from 6e-5 to 65504");
-  command
-      .addOption("-o,--output", arguments->out,
-                 "the light stage to write, .exr; of vertices the model, .glb or .gltf")
-      .required();
-  command.callback([arguments] { run(*arguments); });
+  command.addRequired("-o,--output", a.out,
+                      "the light stage to write, .exr; of vertices the model, .glb or .gltf");
 }
 
 }  // namespace chromeball

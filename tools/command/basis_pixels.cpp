@@ -104,13 +104,11 @@ void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
                       [&](double done) { bar.update(done); });
   }();
   if (const InvalidSamples& invalid = written.invalid; invalid.total() > 0)
-    warn(fmt::format("{} invalid samples were left out; the first is in pixel {}, {}",
-                     invalid.total(), invalid.x, invalid.y));
+    warn("{} invalid samples were left out; the first is in pixel {}, {}", invalid.total(),
+         invalid.x, invalid.y);
   if (written.clipped > 0)
-    warn(
-        fmt::format("{}: {} numbers above 65504, the largest of 16 bits, were clipped; leave out "
-                    "--half",
-                    own.out, written.clipped));
+    warn("{}: {} numbers above 65504, the largest of 16 bits, were clipped; leave out --half",
+         own.out, written.clipped);
   if (!options.quiet())
     fmt::print("{} x {} pixels, {} samples, {} elements ({}){}{} in {:.2f} s: {}\n", s.width,
                s.height, s.samples, basis.size(), basis.name(),

@@ -88,8 +88,8 @@ class BasisVertices {
 
   static void report(const InvalidSamples& invalid) {
     if (invalid.total() > 0)
-      warn(fmt::format("{} invalid samples were left out; the first is of vertex {} {}",
-                       invalid.total(), invalid.x, invalid.y));
+      warn("{} invalid samples were left out; the first is of vertex {} {}", invalid.total(),
+           invalid.x, invalid.y);
   }
 
   TransferSettings settings() const {

@@ -94,7 +94,7 @@ void addExif(const std::string& plate, size_t points, CameraKnowledge& known) {
   if (known.focalLength || points >= fewestPoints(known)) return;
   const auto focal35 = readExif(plate).focalLength35;
   if (!focal35) return;
-  note(fmt::format("{}: its EXIF tells a focal length of {:g} mm on 35 mm film", plate, *focal35));
+  note("{}: its EXIF tells a focal length of {:g} mm on 35 mm film", plate, *focal35);
   known.focalLength = focalLengthOf35mm(known.size, *focal35);
 }
 
@@ -152,7 +152,7 @@ void writePreview(const std::string& path, const Scene& scene, const Solution& s
     marks.cross(point.pixel, kPicked);
     if (const auto seen = view.at(point.position)) marks.circle(size * seen->position, kSeen);
   }
-  print(writeImage(path, picture), false);
+  print(writeImage(path, picture));
 }
 
 void run(const CameraSolveArguments& a) {
@@ -173,7 +173,7 @@ void run(const CameraSolveArguments& a) {
   add(doubtsAbout(solution.points, solution.camera.size));
   if (solution.fit) add(doubtsAbout(*solution.fit));
   add(doubtsAbout(solution.camera, bounds(scene)));
-  print(messages, false);
+  print(messages);
   if (a.json)
     fmt::print("{}\n", reportJson(solution.report()));
   else
@@ -183,48 +183,44 @@ void run(const CameraSolveArguments& a) {
 }  // namespace
 
 void addCameraSolveCommand(Command camera) {
-  const auto a = std::make_shared<CameraSolveArguments>();
-  Command command = camera.addCommand(
+  auto [command, a] = camera.addCommand<CameraSolveArguments>(
       "solve",
       "Find where a photograph was taken from, and its field of view: by points of known "
-      "positions, or by lines along the scene's axes.");
-  command.addOption("MODEL", a->model, "the model, .glb or .gltf, or a scene file").required();
-  command.addOption("PLATE", a->plate, "the photograph").required();
-  command.addOption("--points", a->points,
+      "positions, or by lines along the scene's axes.",
+      run);
+  command.addRequired("MODEL", a.model, "the model, .glb or .gltf, or a scene file");
+  command.addRequired("PLATE", a.plate, "the photograph");
+  command.addOption("--points", a.points,
                     "CSV name,x,y,z,px,py: at least 6 points, or 4 if the field of view is known");
-  command.addOption("--lines", a->lines,
+  command.addOption("--lines", a.lines,
                     "CSV axis,x1,y1,x2,y2[,metres]: at least 2 lines along each of 2 axes");
-  command.addOption("--fspy", a->fspy, "camera parameters that fSpy exported as JSON");
-  command
-      .addOption("-o,--output", a->output,
-                 "the .toml to write; `[camera] file` and --camera-file "
-                 "read it")
-      .required();
-  command.addOption("--fov", a->fov, "the vertical field of view in degrees, if it is known");
-  command.addOption("--focal35", a->focal35,
+  command.addOption("--fspy", a.fspy, "camera parameters that fSpy exported as JSON");
+  command.addRequired("-o,--output", a.output,
+                      "the .toml to write; `[camera] file` and --camera-file read it");
+  command.addOption("--fov", a.fov, "the vertical field of view in degrees, if it is known");
+  command.addOption("--focal35", a.focal35,
                     "the focal length in mm that has the same diagonal field of view on 35 mm "
                     "film, if it is known");
-  command.addFlag("--distortion", a->distortion, "find the lens's radial distortion k1 too");
-  command.addOption("--principal-point", a->principalPoint,
-                    "U,V: where the lens's axis meets the image, as fractions of its size from "
-                    "the top left [0.5,0.5]");
-  command.addOption("--height", a->height,
+  command.addFlag("--distortion", a.distortion, "find the lens's radial distortion k1 too");
+  command.addOption("--principal-point", a.principalPoint,
+                    "U,V: where the lens's axis meets the image, as fractions of its size from the "
+                    "top left [0.5,0.5]");
+  command.addOption("--height", a.height,
                     "height of the camera above the ground y = 0 in metres, for lines");
-  command.addOption("--origin", a->origin,
+  command.addOption("--origin", a.origin,
                     "PX,PY: the pixel that shows the point 0, 0, 0 of the ground, for lines");
-  command.addOption("--up", a->up, "the axis of fSpy's scene that is up: y, or z as in Blender")
-      .showsDefault();
-  command.addOption("--preview", a->preview,
+  command.addWithDefault("--up", a.up,
+                         "the axis of fSpy's scene that is up: y, or z as in Blender");
+  command.addOption("--preview", a.preview,
                     "an image to write: the model's edges over the photograph, picked points as "
                     "crosses, where the camera sees them as circles");
-  command.addFlag("--json", a->json, "print JSON");
+  command.addFlag("--json", a.json, "print JSON");
   command.footer(
       "Positions px, py are in pixels from the photograph's top left corner. The ends of a line "
       "go\n"
       "from one to another farther along the positive axis. `metres` is the length of a line "
       "whose\n"
       "first end is on the ground: the scale; that end is the origin, unless --origin is given.\n");
-  command.callback([a] { run(*a); });
 }
 
 }  // namespace chromeball

@@ -9,6 +9,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "base/error.h"
 #include "base/text.h"
 
 namespace chromeball {
@@ -154,5 +155,9 @@ Command Command::widerNames() {
   return *this;
 }
 bool Command::has(const std::string& option) const { return app_->count(option) > 0; }
+void Command::refuse(std::initializer_list<const char*> options, const std::string& why) const {
+  for (const char* option : options)
+    if (has(option)) throwInput("{}: {}", option, why);
+}
 
 }  // namespace chromeball

@@ -39,7 +39,6 @@ struct CompareArguments {
   int repeats = 4;
   std::string reference, referenceStrategy = "auto", baseline, folder;
   std::optional<int> referenceSamples;
-  bool choosesReference = false;  // referenceStrategy is given
 };
 
 // Combines each strategy with each integrator, except rows that name one.
@@ -137,7 +136,7 @@ int planReferenceSamples(const CompareArguments& a, const std::vector<Budget>& b
   return a.referenceSamples.value_or(std::max(kMin, int(std::min(kFactor * maximum, 1e6))));
 }
 
-Study planStudy(const CompareArguments& a, Messages& notes) {
+Study planStudy(const CompareArguments& a, const Command& command, Messages& notes) {
   Study study;
   study.folder = a.folder;
   study.strategies = resolveRows(resolveStrategies(a.strategies), a.integrators);
@@ -153,10 +152,8 @@ Study planStudy(const CompareArguments& a, Messages& notes) {
     throwInput("--baseline: `{}` is not among the compared strategies", a.baseline);
   study.referenceFile = a.reference;
   if (!a.reference.empty())
-    for (const auto& [given, option] :
-         {std::pair(a.referenceSamples.has_value(), "--reference-samples"),
-          std::pair(a.choosesReference, "--reference-strategy")})
-      if (given) throwInput("{}: the reference is a file; give one or the other", option);
+    command.refuse({"--reference-samples", "--reference-strategy"},
+                   "the reference is a file; give one or the other");
   study.referenceStrategy = rowNamed(a.referenceStrategy, "--reference-strategy").name();
   planReferenceSamples(a, study.budgets);  // throws for an invalid number
   if (a.folder.empty()) throwInput("--output: the name of the folder is empty");
@@ -201,14 +198,14 @@ void checkOutputs(const ReportFiles& files, const CompareArguments& a, const Loa
   checkDistinct({files.csv, files.json, files.samples, files.seconds, files.page}, inputs);
 }
 
-void compare(const CompareArguments& a) {
+void compare(const CompareArguments& a, const Command& command) {
   SceneFile scene = openScene(a.scene.scene);
   const bool hadComposite = scene.composite.has_value();
   scene.composite.reset();
   dropUnheeded(scene, SceneCommand::Compare);
   RenderDescription description = planRender(std::move(scene), a.scene.settings);
   Messages ofRows;
-  Study study = planStudy(a, ofRows);
+  Study study = planStudy(a, command, ofRows);
   // What is said of the suns' angle holds for the rows that have suns.
   const auto hasSuns = [](const std::string& row) { return row.starts_with("suns"); };
   if (description.origins.has("lighting.sun_angle") &&
@@ -237,9 +234,8 @@ void compare(const CompareArguments& a) {
   print(loaded.messages, a.scene.quiet());
   if (hadComposite)
     warn(
-        fmt::format("{}: [composite] is ignored: strategies are compared on the whole model, "
-                    "without the plate",
-                    a.scene.scene));
+        "{}: [composite] is ignored: strategies are compared on the whole model, without the plate",
+        a.scene.scene);
 
   const auto results = [&] {
     const RenderSettings& s = description.settings;
@@ -266,10 +262,9 @@ void compare(const CompareArguments& a) {
                    interrupted);
   }();
   if (!whole)
-    throw Interrupted(
-        fmt::format("interrupted; {} of {} renders are in {}, and the same command "
-                    "continues from there",
-                    run.stored(), run.total(), study.folder));
+    throw Interrupted(fmt::format(
+        "interrupted; {} of {} renders are in {}, and the same command continues from there",
+        run.stored(), run.total(), study.folder));
   const StudyResults all = results();
   write(all);
   for (const std::string& warning : all.warnings) warn(warning);
@@ -281,10 +276,8 @@ void compare(const CompareArguments& a) {
 }  // namespace
 
 void addCompareCommand(Command app) {
-  const auto arguments = std::make_shared<CompareArguments>();
-  CompareArguments& a = *arguments;
-  Command command =
-      app.addCommand("compare", "Compare lighting strategies on a scene: error, bias and time");
+  auto [command, a] = app.addCommand<CompareArguments>(
+      "compare", "Compare lighting strategies on a scene: error, bias and time", compare);
   addSceneOptions(command, a.scene, SceneCommand::Compare);
   command.footer(strategyHelp());
   command
@@ -304,25 +297,16 @@ void addCompareCommand(Command app) {
                  "Samples per pixel; 1,4,16,64 if neither these nor --times are given")
       .delimiter(',');
   command.addOption("--times", a.times, "Seconds per render: 1,2,4").delimiter(',');
-  command
-      .addOption("--repeats", a.repeats,
-                 "Independent renders of each strategy and budget, 3 or more")
-      .showsDefault();
+  command.addWithDefault("--repeats", a.repeats,
+                         "Independent renders of each strategy and budget, 3 or more");
   command.addOption("--reference", a.reference, "Reference image; else it is rendered");
   command.addOption("--reference-samples", a.referenceSamples,
                     "Samples per pixel of a reference that is rendered");
-  command
-      .addOption("--reference-strategy", a.referenceStrategy,
-                 "Strategy of a reference that is rendered")
-      .showsDefault();
+  command.addWithDefault("--reference-strategy", a.referenceStrategy,
+                         "Strategy of a reference that is rendered");
   command.addOption("--baseline", a.baseline, "Strategy whose efficiency is 1 (the first)");
-  command
-      .addOption("-o,--output", a.folder, "Folder of the report; a comparison in it is continued")
-      .required();
-  command.callback([arguments, command] {
-    arguments->choosesReference = command.has("--reference-strategy");
-    compare(*arguments);
-  });
+  command.addRequired("-o,--output", a.folder,
+                      "Folder of the report; a comparison in it is continued");
 }
 
 }  // namespace chromeball

@@ -101,20 +101,21 @@ void writeMap(const ImageErrorArguments& arguments, const Image& map) {
           heatColor(logarithmic ? logLevel(number, maximum, kDecades) : number / maximum);
       for (int c = 0; c < 3; ++c) colors.at(x, y)[c] = srgbToLinear(float(color[size_t(c)]) / 255);
     }
-  print(writeImage(arguments.output, colors), false);
+  print(writeImage(arguments.output, colors));
   if (!arguments.json)
     fmt::print("map             {}, {} from black {:g} to yellow {:g}\n", arguments.map,
                logarithmic ? "logarithmic" : "linear",
                logarithmic ? maximum * std::pow(10, -kDecades) : 0, maximum);
 }
 
-void run(const ImageErrorArguments& arguments, bool isMapGiven) {
+void run(const ImageErrorArguments& arguments, const Command& command) {
   static constexpr std::array<std::string_view, 3> kMaps = {"relative", "z", "flip"};
   if (std::find(kMaps.begin(), kMaps.end(), arguments.map) == kMaps.end())
     throwInput("--map: `{}` is not known; {}", arguments.map,
                didYouMean(arguments.map, {kMaps.begin(), kMaps.end()}));
-  if (isMapGiven && arguments.output.empty())
-    throwInput("--map: has no effect without --output; give the image to write, or leave it out");
+  if (arguments.output.empty())
+    command.refuse({"--map"},
+                   "has no effect without --output; give the image to write, or leave it out");
   if (!arguments.output.empty()) checkOutputFile(arguments.output, {".png"});
   checkDistinct({arguments.output}, {arguments.a, arguments.b});
   const Side a(arguments.a), b(arguments.b);
@@ -148,20 +149,17 @@ void run(const ImageErrorArguments& arguments, bool isMapGiven) {
 }  // namespace
 
 void addImageErrorCommand(Command image) {
-  const auto arguments = std::make_shared<ImageErrorArguments>();
-  Command command = image.addCommand("error", "The error of image A against the reference B.");
-  command.addOption("A", arguments->a, "The image").required();
-  command.addOption("B", arguments->b, "The reference image").required();
-  command.addFlag("--json", arguments->json, "Print JSON");
-  command.addFlag("--flip", arguments->flip,
+  auto [command, a] = image.addCommand<ImageErrorArguments>(
+      "error", "The error of image A against the reference B.", run);
+  command.addRequired("A", a.a, "The image");
+  command.addRequired("B", a.b, "The reference image");
+  command.addFlag("--json", a.json, "Print JSON");
+  command.addFlag("--flip", a.flip,
                   "Also the perceived difference FLIP (Andersson et al. 2020, 2021), 0 to 1");
-  command.addOption("-o,--output", arguments->output, "Write the error in false colors, .png");
-  command
-      .addOption(
-          "--map", arguments->map,
-          "What --output shows: relative (error), z (in sigmas, needs variance layers) or flip")
-      .showsDefault();
-  command.callback([arguments, command] { run(*arguments, command.has("--map")); });
+  command.addOption("-o,--output", a.output, "Write the error in false colors, .png");
+  command.addWithDefault(
+      "--map", a.map,
+      "What --output shows: relative (error), z (in sigmas, needs variance layers) or flip");
 }
 
 }  // namespace chromeball

@@ -10,7 +10,7 @@ namespace chromeball {
 
 ImageFile openImageFile(const std::filesystem::path& path, IntegerTexels integers) {
   ImageFile file = readImageFile(path, integers);
-  print(file.messages, false);
+  print(file.messages);
   return file;
 }
 
@@ -25,16 +25,16 @@ Metadata keptMetadata(const ImageFile& file, const std::string& in, const std::s
   const auto* kind = std::get_if<std::string>(&envmap->second);
   if (kind && *kind == kEnvmapLatLong && lowerExtension(out) != ".png")
     warn(
-        fmt::format("{}: its `envmap` attribute, which puts +Z in the centre, is not kept: as a "
-                    "probe, {} needs a rotation of 180 degrees",
-                    in, out));
+        "{}: its `envmap` attribute, which puts +Z in the centre, is not kept: as a "
+        "probe, {} needs a rotation of 180 degrees",
+        in, out);
   kept.erase(envmap);
   return kept;
 }
 
 LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option) {
   LoadedProbe probe = loadProbe(path, mapping, option);
-  print(probeMessages(probe, path), false);
+  print(probeMessages(probe, path));
   return probe;
 }
 

@@ -23,8 +23,7 @@ LoadedProbe LightsProbe::loadWithFile() const {
   if (mask == "below-horizon") {
     replaceBelowHorizon(probe.latLong, Rgb(0));
     if (probe.maximum > 0 && meanRadiance(probe.latLong) == glm::dvec3(0))
-      warn(fmt::format("--probe-mask: {} leaves no light; {} is black above the horizon", mask,
-                       file));
+      warn("--probe-mask: {} leaves no light; {} is black above the horizon", mask, file);
   }
   return probe;
 }

@@ -80,8 +80,7 @@ void runPolygons(const PolygonRequest& request) {
   }
   if (!request.preview.empty())
     print(writeImage(request.preview, lightPreview(probe.latLong, lights,
-                                                   {partitionOf(probe.latLong, sources), {}})),
-          false);
+                                                   {partitionOf(probe.latLong, sources), {}})));
   fmt::print("polygons    {}\n", sources.size());
   for (size_t i = 0; i < sources.size(); ++i) {
     const Rgb& e = lights[i].irradiance;

@@ -74,13 +74,11 @@ void warnOfDoubt(const ProbeAlignment& alignment) {
         axis ? fmt::format(", all turned about the axis ({:.3f}, {:.3f}, {:.3f})", axis->x, axis->y,
                            axis->z)
              : "";
-    warn(fmt::format("ambiguous: {} other rotation{} as well, such as {}{}", count,
-                     count == 1 ? " fits" : "s fit", text(alignment.others[0].rotation.angles()),
-                     where));
+    warn("ambiguous: {} other rotation{} as well, such as {}{}", count,
+         count == 1 ? " fits" : "s fit", text(alignment.others[0].rotation.angles()), where);
   }
   if (alignment.correlation < kPoor)
-    warn(fmt::format("the correlation is {:.2g}: the probes may be of different places",
-                     alignment.correlation));
+    warn("the correlation is {:.2g}: the probes may be of different places", alignment.correlation);
 }
 
 Image loadAligned(const std::string& file, const std::string& mapping, const char* option) {
@@ -112,20 +110,17 @@ void run(const ProbeAlignArguments& arguments) {
 }  // namespace
 
 void addProbeAlignCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeAlignArguments>();
-  Command command = probe.addCommand(
-      "align", "Find the rotation that makes one probe of a place agree with another.");
-  command.addOption("A", arguments->first, "a probe").required();
-  command.addOption("B", arguments->second, "the probe to turn").required();
-  command.addOption("-o,--output", arguments->out, "write B, turned, as a lat-long map");
-  command.addFlag("--json", arguments->json, "print JSON");
-  command.addOption("--mapping-a", arguments->firstMapping, "the mapping of A; auto detects it");
-  command.addOption("--mapping-b", arguments->secondMapping, "the mapping of B; auto detects it");
+  auto [command, a] = probe.addCommand<ProbeAlignArguments>(
+      "align", "Find the rotation that makes one probe of a place agree with another.", run);
+  command.addRequired("A", a.first, "a probe");
+  command.addRequired("B", a.second, "the probe to turn");
+  command.addOption("-o,--output", a.out, "write B, turned, as a lat-long map");
+  command.addFlag("--json", a.json, "print JSON");
+  command.addOption("--mapping-a", a.firstMapping, "the mapping of A; auto detects it");
+  command.addOption("--mapping-b", a.secondMapping, "the mapping of B; auto detects it");
   command.footer(
       "render takes the angles or the quaternion as --probe-rotation of B. The probes may differ "
-      "in "
-      "exposure, white balance, size and noise.\n");
-  command.callback([arguments] { run(*arguments); });
+      "in exposure, white balance, size and noise.\n");
 }
 
 }  // namespace chromeball

@@ -105,12 +105,12 @@ void warnOfUpsideDown(const Report& report) {
   const auto looksDown = [](double e) { return e > kSteep; };
   const auto isSteep = [](double e) { return std::fabs(e) > kSteep; };
   if (isFisheye && std::ranges::all_of(photographs, looksDown, elevation)) {
-    warn(fmt::format("{}: the lens looks below the horizon; {}", report.arguments.out, meaning));
+    warn("{}: the lens looks below the horizon; {}", report.arguments.out, meaning);
   } else if (std::ranges::any_of(photographs, isSteep, elevation)) {
     const double ratio = brightnessBelow(report.assembly.latLong);
     if (ratio > kBrightGround)
-      warn(fmt::format("{}: is {:.3g} times as bright below the horizon as above it; {}",
-                       report.arguments.out, ratio, meaning));
+      warn("{}: is {:.3g} times as bright below the horizon as above it; {}", report.arguments.out,
+           ratio, meaning);
   }
 }
 
@@ -121,26 +121,26 @@ void warnOf(const Report& report) {
     const ViewMatch& match = report.matches[i];
     const double inside = shareInside(p.circle, p.image.width, p.image.height);
     if (inside < 0.999)
-      warn(fmt::format("{}: {:.0f}% of its circle is outside the picture, and blind", p.file,
-                       100 * (1 - inside)));
+      warn("{}: {:.0f}% of its circle is outside the picture, and blind", p.file,
+           100 * (1 - inside));
     if (p.found && p.found->standardError > kLargestDoubt)
-      warn(fmt::format(
-          "{}: the outline of the ball is doubtful, by {:.2g} pixels; see --preview, or give "
-          "--circle X,Y,RADIUS",
-          p.file, p.found->standardError));
+      warn(
+          "{}: the outline of the ball is doubtful, by {:.2g} pixels; see --preview, "
+          "or give --circle X,Y,RADIUS",
+          p.file, p.found->standardError);
     if (p.found && p.found->other)
-      warn(fmt::format(
+      warn(
           "{}: {:.1f},{:.1f},{:.1f} may be the outline as well; see --preview, or give --circle "
           "X,Y,RADIUS",
-          p.file, p.found->other->centre.x, p.found->other->centre.y, p.found->other->radius));
+          p.file, p.found->other->centre.x, p.found->other->centre.y, p.found->other->radius);
     if (i == 0) continue;
     if (!report.arguments.keepAzimuth && !match.turned)
       warn(
-          fmt::format("{}: no turn of up to {} degrees matches the photographs before "
-                      "(correlation {:.2f} over {:.0f}% of the sphere); its azimuth is kept",
-                      p.file, kLargestTurn, match.correlation, 100 * match.overlap));
+          "{}: no turn of up to {} degrees matches the photographs before (correlation "
+          "{:.2f} over {:.0f}% of the sphere); its azimuth is kept",
+          p.file, kLargestTurn, match.correlation, 100 * match.overlap);
     if (!report.arguments.keepExposure && !match.exposed)
-      warn(fmt::format("{}: hardly overlaps the photographs before; its exposure is kept", p.file));
+      warn("{}: hardly overlaps the photographs before; its exposure is kept", p.file);
   }
   if (!report.arguments.isFisheye() && report.arguments.reflectivity.empty() &&
       report.arguments.ballIor.empty())
@@ -180,7 +180,7 @@ void run(const AssembleArguments& arguments) {
   const Report report{arguments, photographs, views, matches, assembly, target};
   warnOf(report);
   writeProbe(arguments.out, probe, target.mapping);
-  if (!arguments.preview.empty()) print(writeImage(arguments.preview, preview(report)), false);
+  if (!arguments.preview.empty()) print(writeImage(arguments.preview, preview(report)));
   if (arguments.json)
     fmt::print("{}\n", jsonText(toJson(report), 2));
   else
@@ -190,11 +190,10 @@ void run(const AssembleArguments& arguments) {
 }  // namespace
 
 void addProbeAssembleCommand(Command probe) {
-  const auto arguments = std::make_shared<AssembleArguments>();
-  Command command = probe.addCommand(
-      "assemble", "Make a probe from photographs of a mirror ball, or through a fisheye lens.");
-  addAssembleOptions(command, *arguments);
-  command.callback([arguments] { run(*arguments); });
+  auto [command, a] = probe.addCommand<AssembleArguments>(
+      "assemble", "Make a probe from photographs of a mirror ball, or through a fisheye lens.",
+      run);
+  addAssembleOptions(command, a);
 }
 
 }  // namespace chromeball

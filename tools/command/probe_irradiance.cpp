@@ -49,20 +49,16 @@ void run(const ProbeIrradianceArguments& arguments) {
 }  // namespace
 
 void addProbeIrradianceCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeIrradianceArguments>();
-  Command command = probe.addCommand(
-      "irradiance", "The irradiance on surfaces of every orientation, as a lat-long map.");
-  command.addOption("IN", arguments->in, "the probe's image").required();
-  command.addOption("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
-      .required();
-  command.addOption("--size", arguments->size, "WIDTHxHEIGHT; else the probe's, as lat-long");
-  command
-      .addOption("--method", arguments->method,
-                 "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative")
-      .showsDefault();
-  addRotationOption(command, arguments->rotation);
-  command.addOption("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
-  command.callback([arguments] { run(*arguments); });
+  auto [command, a] = probe.addCommand<ProbeIrradianceArguments>(
+      "irradiance", "The irradiance on surfaces of every orientation, as a lat-long map.", run);
+  command.addRequired("IN", a.in, "the probe's image");
+  command.addRequired("OUT", a.out, "the image to write: .exr, .hdr, .pfm or .png");
+  command.addOption("--size", a.size, "WIDTHxHEIGHT; else the probe's, as lat-long");
+  command.addWithDefault(
+      "--method", a.method,
+      "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative");
+  addRotationOption(command, a.rotation);
+  command.addOption("--mapping", a.mapping, "the mapping of IN; auto detects it");
 }
 
 }  // namespace chromeball

@@ -113,7 +113,7 @@ void merge(const MergeArguments& arguments) {
   checkDistinct({arguments.output, arguments.responseOutput}, inputs);
 
   MergedPhotographs merged = mergePhotographs(series);
-  print(merged.messages, false);
+  print(merged.messages);
   if (arguments.json)
     fmt::print("{}\n", jsonText(toJson(series, merged), 2));
   else
@@ -123,8 +123,7 @@ void merge(const MergeArguments& arguments) {
                                                   {"clipped", "", std::move(merged.image.clipped)}},
                                                  metadataOf(merged),
                                                  {},
-                                                 {}}),
-        false);
+                                                 {}}));
 }
 
 glm::dmat3 photographsToRec709(const ImageFile& file, const std::string& path) {
@@ -173,9 +172,9 @@ void calibrate(const MergeArguments& arguments) {
   for (int c = 0; c < 3; ++c)
     if (!(std::abs(filter.median[c] / t[c] - 1) <= kTolerance)) {
       warn(
-          fmt::format("the median of the pixels' ratios, {:.4g} {:.4g} {:.4g}, differs from that "
-                      "of their sums: is the light or the scene another, or dark noise strong?",
-                      filter.median.x, filter.median.y, filter.median.z));
+          "the median of the pixels' ratios, {:.4g} {:.4g} {:.4g}, differs from that "
+          "of their sums: is the light or the scene another, or dark noise strong?",
+          filter.median.x, filter.median.y, filter.median.z);
       break;
     }
   if (arguments.json)

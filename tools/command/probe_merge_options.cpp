@@ -89,18 +89,17 @@ void MergeArguments::addTo(Command command) {
       .addOption("--flat-field", flatFields,
                  "F.exr, or N=F.exr for the photographs at f/N: divide by it (`image flat-field`)")
       .onePerName();
-  command.addOption("--response", response,
-                    "linear, srgb, solve or a file of --write-response; without it srgb for 8 "
-                    "bits, else linear");
+  command.addOption(
+      "--response", response,
+      "linear, srgb, solve or a file of --write-response; without it srgb for 8 bits, else linear");
   command.addOption("--write-response", responseOutput,
                     "the response as text: 256 levels and their exposures");
   command.addOption(
       "--smoothness", smoothness,
       fmt::format("of the solved response, default {:g}", PhotographSeries{}.smoothness));
-  command.addOption(
-      "--white", white,
-      "where floats saturate; without it 1, or the largest number if that is higher. The result "
-      "has the scale of the files");
+  command.addOption("--white", white,
+                    "where floats saturate; without it 1, or the largest number if that is higher. "
+                    "The result has the scale of the files");
   command.addFlag("--resize", resizes,
                   "accept photographs of several sizes, each cropped to the same ball: resample "
                   "them to the smallest");

@@ -135,27 +135,23 @@ void run(const ProbeRaysArguments& arguments) {
 }  // namespace
 
 void addProbeRaysCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeRaysArguments>();
-  Command command = probe.addCommand(
+  auto [command, a] = probe.addCommand<ProbeRaysArguments>(
       "rays",
-      "How many random rays the irradiance of an unoccluded point needs: facing up, and the "
-      "median and the most of 1280 normals.");
-  command.addOption("PROBE", arguments->file, "the probe's image").required();
-  command
-      .addOption("--error", arguments->error,
-                 "the standard error of the luminance to reach, as a fraction")
-      .showsDefault();
-  command.addOption("--size", arguments->size,
-                    "WIDTHxHEIGHT: reduce the probe to this lat-long map first");
-  addRotationOption(command, arguments->rotation);
-  command.addOption("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
-  command.addFlag("--json", arguments->json, "print JSON");
+      "How many random rays the irradiance of an unoccluded point needs: facing up, and the median "
+      "and the most of 1280 normals.",
+      run);
+  command.addRequired("PROBE", a.file, "the probe's image");
+  command.addWithDefault("--error", a.error,
+                         "the standard error of the luminance to reach, as a fraction");
+  command.addOption("--size", a.size, "WIDTHxHEIGHT: reduce the probe to this lat-long map first");
+  addRotationOption(command, a.rotation);
+  command.addOption("--mapping", a.mapping, "the mapping of PROBE; auto detects it");
+  command.addFlag("--json", a.json, "print JSON");
   command.footer(
       "Samplings:\n"
       "  uniform      directions uniform over the hemisphere\n"
       "  cosine       pdf proportional to the cosine\n"
       "  luminance    pdf proportional to the probe's luminance, over the whole sphere\n");
-  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -34,8 +34,7 @@ Photograph loadPhotograph(const std::string& file, const std::optional<double>& 
   ImageFile read = openImageFile(file);
   const bool hasIntegers = read.integers;
   if (hasIntegers)
-    warn(fmt::format(
-        "{}: has integer texels: decoded from sRGB, without the response of the camera", file));
+    warn("{}: has integer texels: decoded from sRGB, without the response of the camera", file);
   return {colorOf(std::move(read), file), saturation.value_or(hasIntegers ? kWhite : kLargestHalf)};
 }
 
@@ -118,28 +117,24 @@ void run(const ProbeReflectivityArguments& arguments) {
 }  // namespace
 
 void addProbeReflectivityCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeReflectivityArguments>();
-  Command command = probe.addCommand(
+  auto [command, a] = probe.addCommand<ProbeReflectivityArguments>(
       "reflectivity",
       "Measure how much a mirror ball or a paint reflects, from a photograph that shows a surface "
-      "directly and in the ball, or the paint and a standard.");
-  command.addOption("PHOTO", arguments->photograph, "a linear image").required();
-  command.addOption("--direct", arguments->direct,
+      "directly and in the ball, or the paint and a standard.",
+      run);
+  command.addRequired("PHOTO", a.photograph, "a linear image");
+  command.addOption("--direct", a.direct,
                     "X,Y,WIDTH,HEIGHT in pixels: the surface seen directly, or the standard");
-  command
-      .addOption("--reflected", arguments->reflected,
-                 "X,Y,WIDTH,HEIGHT: the same surface in the ball, or the paint")
-      .required();
-  command.addOption("--against", arguments->against,
-                    "where the standard is: the photograph in which --direct lies, or its "
-                    "rectangle in PHOTO");
-  command.addOption("--standard-reflectance", arguments->standard,
-                    "X or R,G,B of the standard; else 1");
-  command.addOption("--saturation", arguments->saturation,
-                    "the level from which on channels are clipped; else 1 in integer images, and "
-                    "65504");
-  command.addFlag("--json", arguments->json, "print JSON");
-  command.callback([arguments] { run(*arguments); });
+  command.addRequired("--reflected", a.reflected,
+                      "X,Y,WIDTH,HEIGHT: the same surface in the ball, or the paint");
+  command.addOption(
+      "--against", a.against,
+      "where the standard is: the photograph in which --direct lies, or its rectangle in PHOTO");
+  command.addOption("--standard-reflectance", a.standard, "X or R,G,B of the standard; else 1");
+  command.addOption(
+      "--saturation", a.saturation,
+      "the level from which on channels are clipped; else 1 in integer images, and 65504");
+  command.addFlag("--json", a.json, "print JSON");
 }
 
 }  // namespace chromeball

@@ -24,8 +24,7 @@ size_t parseKeep(std::string text, size_t count) {
   const double kept = isPercent ? std::round(number / 100 * double(count)) : number;
   if (!(number > 0) || number > (isPercent ? 100 : double(count)) || kept != std::floor(kept))
     throwInput(
-        "--keep: should be a whole number from 1 to {}, or a percentage above 0 and up to "
-        "100%",
+        "--keep: should be a whole number from 1 to {}, or a percentage above 0 and up to 100%",
         count);
   return std::max<size_t>(size_t(kept), 1);
 }
@@ -91,7 +90,7 @@ class RelightModel {
 
   std::vector<Rgb> coefficients() {
     const LoadedProbe loaded = loadProbe(options_.probe, options_.mapping, "--mapping");
-    print(loaded.messages, false);
+    print(loaded.messages);
     for (const auto& lines :
          {warnings(loaded, options_.probe), lightWarnings(loaded, options_.probe)})
       warnings_.insert(warnings_.end(), lines.begin(), lines.end());

@@ -47,7 +47,7 @@ LightStage readPhotographsOf(const RelightOptions& a) {
   if (!a.out.empty()) checkDistinct({a.out}, inputs);
   Messages messages;
   LightStage stage = stageOf(a.images, photographs, float(irradiance), memoryOf(a), messages);
-  print(messages, false);
+  print(messages);
   return stage;
 }
 
@@ -100,7 +100,7 @@ void writePicture(const RelightOptions& a, const Image& picture, const Direction
                      {"stage", a.source()},
                      {"basis", basis.name()}};
   if (!a.probes.empty()) output.metadata["probe"] = a.probes.front();
-  print(writeImage(a.out, output, transform), false);
+  print(writeImage(a.out, output, transform));
 }
 
 // "": all was kept.
@@ -153,7 +153,7 @@ void runRelightPreview(const RelightOptions& a) {
     probes.push_back({std::filesystem::path(path).filename().string(), loadLight(a, path)});
   const RelightView view(readStage(a), std::move(probes));
   RelightServer server(int(port), view);
-  note(fmt::format("preview at {}; Ctrl-C or its button ends it", server.address()));
+  note("preview at {}; Ctrl-C or its button ends it", server.address());
   server.run();
 }
 

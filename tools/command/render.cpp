@@ -60,7 +60,7 @@ void printOutcome(const RenderDescription& description, const FinishedRender& re
 void writeImages(const RenderDescription& description, const LoadedScene& loaded,
                  const FinishedRender& result, PhaseSeconds seconds) {
   Stopwatch watch;
-  print(writeOutputs(description, result.image), false);
+  print(writeOutputs(description, result.image));
   seconds.render = result.seconds;
   seconds.write = watch.lap();
   if (const auto& stats = description.output.stats)
@@ -164,7 +164,7 @@ void checkProbes(const Sequence& sequence, bool overwrites) {
 // Messages that an earlier frame has not printed.
 void printNew(const Messages& messages, std::set<std::string>& printed, bool quiet) {
   for (const Message& message : messages)
-    if (printed.insert(message.text).second) print({message}, quiet);
+    if (printed.insert(message.text).second) print(Messages{message}, quiet);
 }
 
 void renderFrames(const Sequence& sequence, const SceneOptions& options) {
@@ -226,11 +226,10 @@ void render(const SceneOptions& options) {
 }  // namespace
 
 void addRenderCommand(Command app) {
-  const auto options = std::make_shared<SceneOptions>();
-  Command command = app.addCommand("render", "Render a scene file or a model to an image");
-  addSceneOptions(command, *options, SceneCommand::Render);
+  auto [command, a] =
+      app.addCommand<SceneOptions>("render", "Render a scene file or a model to an image", render);
+  addSceneOptions(command, a, SceneCommand::Render);
   command.footer(strategyHelp());
-  command.callback([options] { render(*options); });
 }
 
 }  // namespace chromeball

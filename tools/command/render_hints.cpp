@@ -72,11 +72,11 @@ void addExcluded(const RenderResult& result, Messages& messages) {
     messages.push_back({Message::Kind::Warning, std::move(text)});
   };
   if (const InvalidSamples& invalid = result.invalid; invalid.total())
-    warning(fmt::format(
-        "{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), the "
-        "first at pixel ({}, {}); --aov invalid shows where",
-        invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
-        invalid.of(Defect::Negative), invalid.x, invalid.y));
+    warning(
+        fmt::format("{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), "
+                    "the first at pixel ({}, {}); --aov invalid shows where",
+                    invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
+                    invalid.of(Defect::Negative), invalid.x, invalid.y));
   const bool isComposite = !result.layers.empty() && result.groups.empty();
   if (result.clamped.count)
     warning(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the light of {}",

@@ -223,8 +223,8 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
                                         [](const Material& m) { return m.backLetsLightThrough(); });
   if (!lets && 2 * size_t(behindWalls) > seen.black.size())
     return what +
-           "single-sided walls, which the camera sees through, block the light; "
-           "try --single-sided light, or add lamps with [[light]] in a scene file";
+           "single-sided walls, which the camera sees through, block the light; try --single-sided "
+           "light, or add lamps with [[light]] in a scene file";
   if (black < kNearlyAll) return std::nullopt;
   if (const auto removed = removedLight(loaded); !removed.empty())
     return what + noLightWith(removed);

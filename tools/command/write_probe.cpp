@@ -21,19 +21,19 @@ void warnOfLostMapping(const std::string& file, const Image& map, Mapping mappin
   if (detected.mapping == mapping) return;
   // A scene file takes lenses only from files that name them.
   const bool isLens = mapping.kind() == Mapping::FisheyeDisc;
-  warn(fmt::format(
-      "{}: has no place for its mapping, {}, and will be taken for {}: give `--from {}`{} where it "
-      "is read, or write an .exr or .hdr",
+  warn(
+      "{}: has no place for its mapping, {}, and will be taken for {}: give `--from "
+      "{}`{} where it is read, or write an .exr or .hdr",
       file, mappingName(mapping), mappingName(detected.mapping), mappingName(mapping),
-      isLens ? "" : " or `[probe] mapping`"));
+      isLens ? "" : " or `[probe] mapping`");
 }
 
 void warnOfClipping(const std::string& file, const Image& map) {
   const auto clipped = std::count_if(map.texels.begin(), map.texels.end(),
                                      [](float channel) { return channel > 1; });
   if (clipped > 0)
-    warn(fmt::format("{}: {:.3g}% of the channels are above 1, and clipped; an .exr holds them",
-                     file, 100. * double(clipped) / double(map.texels.size())));
+    warn("{}: {:.3g}% of the channels are above 1, and clipped; an .exr holds them", file,
+         100. * double(clipped) / double(map.texels.size()));
 }
 
 }  // namespace
@@ -48,9 +48,9 @@ void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
   if (kind == ".hdr") {
     checkWritable(file);
     writeRadianceHdr(file, map, {{kMappingAttribute, name}});
-    return print(lostLight(file, map), false);
+    return print(lostLight(file, map));
   }
-  print(writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, name}}}), false);
+  print(writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, name}}}));
   if (kind == ".exr") return;
   warnOfLostMapping(file, map, mapping);
   if (kind == ".png") warnOfClipping(file, map);
