@@ -8,13 +8,13 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "busy_line.h"
+#include "commands.h"
 #include "image/io/write_image.h"
 #include "messages.h"
 #include "probe/capture/assemble.h"
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
 #include "probe/solid_angle.h"
-#include "probe_commands.h"
 #include "write_probe.h"
 
 namespace chromeball {
@@ -160,9 +160,9 @@ Image preview(const Report& report) {
   return assemblyPreview(previews, report.assembly);
 }
 
-void run(const AssembleArguments& arguments) {
+void run(const AssembleArguments& arguments, const Command& command) {
   checkFiles(arguments);
-  const std::shared_ptr<const CaptureOptics> optics = parseOptics(arguments);
+  const std::shared_ptr<const CaptureOptics> optics = parseOptics(arguments, command);
   const BlindFill fill = parseFill(arguments.fill);
   const std::vector<AssemblyPhotograph> photographs = loadPhotographs(arguments);
   std::vector<CaptureView> views;
