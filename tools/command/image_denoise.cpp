@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "commands.h"
 #include "denoise/denoise.h"
 #include "image/io/output_file.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
 #include "input_image.h"
 #include "messages.h"
 #include "progress_bar.h"

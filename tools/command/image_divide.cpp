@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "commands.h"
 #include "image/flat_field.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
 #include "input_image.h"
 #include "messages.h"
 

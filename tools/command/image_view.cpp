@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
 #include "input_image.h"
 #include "layer_view.h"
 #include "messages.h"

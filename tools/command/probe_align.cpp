@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "busy_line.h"
+#include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "input_image.h"
@@ -14,7 +15,6 @@
 #include "probe/capture/align.h"
 #include "probe/convert.h"
 #include "probe/load.h"
-#include "probe_commands.h"
 #include "write_probe.h"
 
 namespace chromeball {

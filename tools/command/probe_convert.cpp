@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "busy_line.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
@@ -13,7 +14,6 @@
 #include "probe/convert.h"
 #include "probe/edit.h"
 #include "probe/load.h"
-#include "probe_commands.h"
 #include "rotation_option.h"
 #include "write_probe.h"
 

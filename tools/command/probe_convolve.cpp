@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "busy_line.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
@@ -17,7 +18,6 @@
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe/prefiltered_probe.h"
-#include "probe_commands.h"
 #include "rotation_option.h"
 #include "write_probe.h"
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
@@ -15,7 +16,6 @@
 #include "probe/edit.h"
 #include "probe/load.h"
 #include "probe/solid_angle.h"
-#include "probe_commands.h"
 #include "rotation_option.h"
 #include "write_probe.h"
 

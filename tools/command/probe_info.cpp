@@ -5,12 +5,12 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
+#include "commands.h"
 #include "json_values.h"
 #include "messages.h"
 #include "probe/info.h"
 #include "probe/load.h"
 #include "probe/solid_angle.h"
-#include "probe_commands.h"
 #include "rotation_option.h"
 
 namespace chromeball {

@@ -4,12 +4,12 @@
 #include <optional>
 
 #include "base/error.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "input_image.h"
 #include "messages.h"
 #include "probe/load.h"
-#include "probe_commands.h"
 #include "study/report/row_distribution.h"
 #include "study/report/row_plot.h"
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "input_image.h"
 #include "math/icosphere.h"
@@ -12,7 +13,6 @@
 #include "probe/convert.h"
 #include "probe/load.h"
 #include "probe/random_rays.h"
-#include "probe_commands.h"
 #include "rotation_option.h"
 #include "write_probe.h"
 

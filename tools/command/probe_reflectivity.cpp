@@ -4,12 +4,12 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "input_image.h"
 #include "json_values.h"
 #include "messages.h"
 #include "probe/capture/reflectivity.h"
-#include "probe_commands.h"
 
 namespace chromeball {
 namespace {

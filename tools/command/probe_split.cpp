@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "light_options.h"
@@ -14,7 +15,6 @@
 #include "messages.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"
-#include "probe_commands.h"
 
 namespace chromeball {
 namespace {

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "busy_line.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "front/tile_file.h"
 #include "image/io/output_file.h"
@@ -13,7 +14,6 @@
 #include "input_image.h"
 #include "messages.h"
 #include "probe/capture/stitch.h"
-#include "probe_commands.h"
 #include "write_probe.h"
 
 namespace chromeball {

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/json_text.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
@@ -15,7 +16,6 @@
 #include "messages.h"
 #include "probe/capture/sun_from_ball.h"
 #include "probe/synth.h"
-#include "probe_commands.h"
 #include "write_probe.h"
 
 namespace chromeball {

@@ -6,10 +6,10 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"
-#include "probe_commands.h"
 #include "write_probe.h"
 
 namespace chromeball {
