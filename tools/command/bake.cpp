@@ -15,7 +15,6 @@
 #include "commands.h"
 #include "front/arguments.h"
 #include "front/plan_render.h"
-#include "heeded_settings.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "messages.h"
@@ -23,7 +22,6 @@
 #include "scene_options.h"
 #include "session/memory_estimate.h"
 #include "session/render_loaded.h"
-#include "thread_limit.h"
 
 namespace chromeball {
 namespace {

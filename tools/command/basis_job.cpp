@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "heeded_settings.h"
 
 namespace chromeball {
 

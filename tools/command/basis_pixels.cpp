@@ -15,7 +15,6 @@
 #include "relight/stage/render_basis.h"
 #include "relight/stage/stage_file.h"
 #include "session/memory_estimate.h"
-#include "thread_limit.h"
 
 namespace chromeball {
 namespace {

@@ -12,7 +12,6 @@
 #include "progress_bar.h"
 #include "relight/transfer/glossy_model.h"
 #include "session/memory_estimate.h"
-#include "thread_limit.h"
 
 namespace chromeball {
 namespace {

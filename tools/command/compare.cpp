@@ -9,7 +9,6 @@
 #include "base/json_text.h"
 #include "commands.h"
 #include "front/plan_render.h"
-#include "heeded_settings.h"
 #include "image/io/output_file.h"
 #include "interrupt.h"
 #include "lighting/methods.h"
@@ -24,7 +23,6 @@
 #include "study/result_tables.h"
 #include "study/study.h"
 #include "study/study_run.h"
-#include "thread_limit.h"
 
 namespace chromeball {
 namespace {

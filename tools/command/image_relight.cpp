@@ -18,7 +18,6 @@
 #include "probe/probe.h"
 #include "probe/sun_extraction.h"
 #include "relight/stage/light_layers.h"
-#include "relit_attributes.h"
 #include "rotation_option.h"
 
 namespace chromeball {
@@ -153,11 +152,54 @@ std::string gainsInWords(const ImageRelightArguments& a, const Metadata& metadat
   return text + "gain=" + a.gains;
 }
 
+// The attributes of a render that are no longer true once its light is another: of how bright the
+// sources are; of the sources, the paths from them, their samples and the file.
+constexpr const char* kOfNoise[] = {"noise", "noise_median", "noise_p95", "denoised_noise",
+                                    "clamp_light_removed"};
+constexpr const char* kOfLight[] = {"probe",
+                                    "probe-mapping",
+                                    "probe-found",
+                                    "probe-rotation",
+                                    "probe-scale",
+                                    "files",
+                                    "lights",
+                                    "light-units",
+                                    "light-from",
+                                    "sun-angle",
+                                    "show-lights",
+                                    "strategy",
+                                    "mis",
+                                    "guide",
+                                    "regularize",
+                                    "clamp",
+                                    "denoise",
+                                    "integrator",
+                                    "ao",
+                                    "reflection-occlusion",
+                                    "irradiance-cache",
+                                    "max-depth",
+                                    "max-diffuse-depth",
+                                    "max-specular-depth",
+                                    "max-transmission-depth",
+                                    "glass-shadows",
+                                    "samples",
+                                    "samplesOfAll",
+                                    "adaptive",
+                                    "seed",
+                                    "shard",
+                                    "noise-limit",
+                                    "time-limit",
+                                    "rays",
+                                    "seconds",
+                                    "command",
+                                    "aov"};
+
 // The file's attributes without those that are no longer true, and how it was relit.
 Metadata relitMetadata(const ImageRelightArguments& arguments, const ImageFile& file) {
   Metadata kept = keptMetadata(file, arguments.in, arguments.out);
-  eraseNoise(kept);
-  if (!arguments.probe.empty()) eraseLight(kept);
+  for (const char* name : kOfNoise) kept.erase(name);
+  if (!arguments.probe.empty())
+    for (const char* name : kOfLight) kept.erase(name);
   kept["relit"] =
       arguments.probe.empty() ? gainsInWords(arguments, file.metadata) : lightInWords(arguments);
   return kept;

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
@@ -20,6 +19,7 @@
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
+#include "progress_bar.h"
 #include "rotation_option.h"
 
 namespace chromeball {

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "image/io/output_file.h"
 #include "light_options.h"
@@ -16,6 +15,7 @@
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
+#include "progress_bar.h"
 #include "study/report/log_log_plot.h"
 
 namespace chromeball {

@@ -10,7 +10,6 @@
 #include "image/io/output_file.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "image_noise_text.h"
 #include "messages.h"
 #include "parts/merge.h"
 #include "progress_bar.h"

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
@@ -15,6 +14,7 @@
 #include "probe/capture/align.h"
 #include "probe/convert.h"
 #include "probe/load.h"
+#include "progress_bar.h"
 #include "write_probe.h"
 
 namespace chromeball {

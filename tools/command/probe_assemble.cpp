@@ -7,7 +7,6 @@
 #include "assemble_options.h"
 #include "base/json.h"
 #include "base/json_text.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "image/io/write_image.h"
 #include "messages.h"
@@ -15,6 +14,7 @@
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
 #include "probe/solid_angle.h"
+#include "progress_bar.h"
 #include "write_probe.h"
 
 namespace chromeball {

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "base/error.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
@@ -14,6 +13,7 @@
 #include "probe/convert.h"
 #include "probe/edit.h"
 #include "probe/load.h"
+#include "progress_bar.h"
 #include "rotation_option.h"
 #include "write_probe.h"
 

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
@@ -18,6 +17,7 @@
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe/prefiltered_probe.h"
+#include "progress_bar.h"
 #include "rotation_option.h"
 #include "write_probe.h"
 

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
@@ -13,6 +12,7 @@
 #include "messages.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
+#include "progress_bar.h"
 #include "rotation_option.h"
 #include "write_probe.h"
 

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "front/tile_file.h"
@@ -14,6 +13,7 @@
 #include "input_image.h"
 #include "messages.h"
 #include "probe/capture/stitch.h"
+#include "progress_bar.h"
 #include "write_probe.h"
 
 namespace chromeball {

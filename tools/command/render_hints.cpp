@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/file.h"
-#include "why_black.h"
 
 namespace chromeball {
 namespace {
@@ -98,6 +98,18 @@ Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared
   if (const auto why = whyWhite(loaded, result.render))
     messages.push_back({Message::Kind::Note, *why});
   return messages;
+}
+
+std::string inWords(const ImageNoise& n) {
+  if (!std::isfinite(n.noise)) return "unknown";
+  return fmt::format("{:.2f}% (median of the pixels {:.2f}%, 95% of them below {:.2f}%)",
+                     100 * n.noise, 100 * n.median, 100 * n.p95);
+}
+
+std::string inWords(const std::optional<DenoiseReport>& denoised) {
+  if (!denoised) return "";
+  if (!std::isfinite(denoised->noise)) return "; denoised";
+  return fmt::format("; denoised to about {:.2f}%", 100 * denoised->noise);
 }
 
 }  // namespace chromeball

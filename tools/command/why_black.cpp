@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "why_black.h"
+// Explains why a rendered image shows nothing.
+#include "render_hints.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +10,6 @@
 
 #include "math/icosphere.h"
 #include "probe/solid_angle.h"
-#include "render_hints.h"
 #include "scene/surface.h"
 #include "trace/accel.h"
 
