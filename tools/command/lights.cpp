@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball lights PROBE --method NAME --count N -o FILE
+#include "lights.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
@@ -15,7 +17,6 @@
 #include "lighting/export/light_preview.h"
 #include "lighting/fit/light_descent.h"
 #include "lighting/methods.h"
-#include "lights_polygons.h"
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
@@ -26,18 +27,6 @@ namespace chromeball {
 namespace {
 
 constexpr double kMaxAngle = 10;  // degrees; more is no longer a light from one direction
-
-struct LightsArguments {
-  LightsProbe probe;
-  std::string method, output, format, preview, sphere, maxError, polygons, units;
-  std::optional<std::string> seed;
-  std::optional<int> suggest;  // so many polygons
-  std::optional<int> normals;  // of the sphere
-  std::optional<double> angle;
-  Rotation rotation;
-  bool regions = false;
-  LightRequest request;
-};
 
 // "5" or "5%".
 double parsePercent(std::string text, std::string_view option) {
@@ -147,14 +136,7 @@ void runPolygonsOf(const LightsArguments& arguments, const Command& command) {
   checkReplaceable(arguments.output);
   if (!arguments.preview.empty()) checkWritable(arguments.preview);
   arguments.probe.checkMask();
-  runPolygons({.probe = arguments.probe,
-               .output = arguments.output,
-               .preview = arguments.preview,
-               .suggest = arguments.suggest,
-               .polygons = arguments.polygons,
-               .format = format,
-               .units = unitsOf(arguments),
-               .rotation = arguments.rotation});
+  runPolygons(arguments, format, unitsOf(arguments));
   warnOfUnits(arguments, format);
 }
 
