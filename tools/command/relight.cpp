@@ -2,13 +2,13 @@
 // chromeball relight STAGE.exr --probe P -o OUT.exr: a light stage under a probe.
 // chromeball relight STAGE.exr --probe P --probe Q --preview: on a page, where the probes turn.
 // chromeball relight MODEL_PRT.glb --probe P -o MODEL_LIT.glb: vertices by their transfer.
+#include "relight.h"
+
 #include "base/error.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "relight_model.h"
-#include "relight_stage.h"
 #include "rotation_option.h"
 
 namespace chromeball {
@@ -69,8 +69,7 @@ void runModel(const RelightOptions& a) {
   refuseGiven(optionsOfDisplay(a), kWhy);
   if (a.probes.size() != 1) throwInput("--probe: give one");
   if (a.out.empty()) throwInput("--output: needs a name");
-  runRelightModel({a.stage, a.out, a.probes.front(), a.mapping, a.scale, a.keep, a.rotation, a.view,
-                   a.white, a.allowsExternal, a.quiet});
+  runRelightModel(a);
 }
 
 void check(const RelightOptions& a) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "relight_stage.h"
 #include "input_image.h"
+#include "relight.h"
 
 #include <filesystem>
 
