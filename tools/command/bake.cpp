@@ -230,13 +230,9 @@ class Bake {
   void checkPageMemory(int size) const {
     constexpr double kBytesPerTexel = 7 * sizeof(float) + 20 + sizeof(BakePoint) +
                                       sizeof(PointResult) + 2 * sizeof(Rgb) + sizeof(int);
-    const double needed = kBytesPerTexel * size * size + estimateMemory(loaded_).peak;
-    if (needed > memoryLimit(loaded_.description))
-      throw InputError(fmt::format("{}: a page of {} x {} texels takes {:.3g} GB of memory with "
-                                   "all else; the limit is {:.3g} GB",
-                                   options_.texel ? "--texel" : "--size", size, size, 1e-9 * needed,
-                                   1e-9 * memoryLimit(loaded_.description)),
-                       Remedy{"memory", {}});
+    checkMemoryWithScene(loaded_, kBytesPerTexel * size * size,
+                         fmt::format("{}: a page of {} x {} texels takes",
+                                     options_.texel ? "--texel" : "--size", size, size));
   }
 
   void report() const {

@@ -7,6 +7,8 @@
 #include "front/settings.h"
 #include "front/settings_page.h"
 #include "progress_bar.h"
+#include "session/load_scene.h"
+#include "session/memory_estimate.h"
 
 namespace chromeball {
 namespace {
@@ -244,6 +246,15 @@ void dropLight(SceneFile& scene, Settings& options) {
   if (!names.empty())
     scene.warnings.push_back(fmt::format("{} {} no effect on occlusion", fmt::join(names, ", "),
                                          names.size() == 1 ? "has" : "have"));
+}
+
+void checkMemoryWithScene(const LoadedScene& loaded, double bytes, const std::string& what) {
+  const double needed = bytes + estimateMemory(loaded).peak;
+  const double limit = memoryLimit(loaded.description);
+  if (needed > limit)
+    throw InputError(fmt::format("{} {:.3g} GB of memory with all else; the limit is {:.3g} GB",
+                                 what, 1e-9 * needed, 1e-9 * limit),
+                     Remedy{"memory", {}});
 }
 
 }  // namespace chromeball

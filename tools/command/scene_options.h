@@ -11,6 +11,8 @@
 
 namespace chromeball {
 
+struct LoadedScene;
+
 struct SceneOptions {
   std::string scene;
   Settings settings;  // from the command line; locations are option names ("--size")
@@ -43,5 +45,8 @@ void dropUnheeded(SceneFile& scene, SceneCommand command);
 // Removes all that says how light reaches the models, on which their occlusion does not depend, and
 // adds a warning that names what `options` had of it.
 void dropLight(SceneFile& scene, Settings& options);
+
+// Throws InputError unless these bytes fit into the memory beside the scene; `what` takes them.
+void checkMemoryWithScene(const LoadedScene& loaded, double bytes, const std::string& what);
 
 }  // namespace chromeball
