@@ -151,10 +151,7 @@ void runRelightPreview(const RelightOptions& a) {
   std::vector<NamedProbe> probes;
   for (const std::string& path : a.probes)
     probes.push_back({std::filesystem::path(path).filename().string(), loadLight(a, path)});
-  const RelightView view(readStage(a), std::move(probes));
-  RelightServer server(int(port), view);
-  note("preview at {}; Ctrl-C or its button ends it", server.address());
-  server.run();
+  serveRelight(int(port), readStage(a), std::move(probes));
 }
 
 }  // namespace chromeball
