@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "demo/still_life.h"
+#include "demo/gallery.h"
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "scene/gltf/load_gltf.h"

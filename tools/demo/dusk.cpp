@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dusk.h"
+#include "gallery.h"
 
 #include "noise.h"
 #include "probe/mapping.h"
