@@ -3,6 +3,8 @@
 // replaces the default probe, a studio.
 #pragma once
 
+#include <benchmark/benchmark.h>
+
 #include <array>
 #include <cstdlib>
 #include <ctime>
@@ -19,9 +21,9 @@ namespace chromeball {
 
 inline constexpr int kWidth = 320, kHeight = 240, kSamples = 64, kDepth = 5;
 
-inline Image benchmarkProbe() {
-  if (const char* path = std::getenv("CHROMEBALL_PROBE")) return loadProbe(path).latLong;
-  return studioProbe({1024, 512});
+inline Image benchmarkProbe(const ImageSize& size = {1024, 512}) {
+  const char* path = std::getenv("CHROMEBALL_PROBE");
+  return path ? loadProbe(path).latLong : studioProbe(size);
 }
 
 struct BenchmarkScene {
@@ -118,6 +120,11 @@ inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
         return sum;
       },
       log);
+}
+
+// How the benchmarks are reported.
+inline void inMilliseconds(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
 // CPU time of this thread.
