@@ -39,35 +39,26 @@ struct CompareArguments {
   std::optional<int> referenceSamples;
 };
 
-// Combines each strategy with each integrator, except rows that name one.
+// Combines each strategy, or all, with each integrator, except rows that name one.
 std::vector<std::string> resolveRows(const std::vector<std::string>& strategies,
                                      const std::vector<std::string>& integrators) {
-  std::vector<std::string> names;
+  std::vector<std::string> given, names;
+  for (const std::string& name : strategies)
+    if (name != "all")
+      given.push_back(rowNamed(name, "--strategies").name());
+    else
+      for (const std::string_view known : strategyNames())
+        given.push_back(resolveStrategy(std::string(known)));
   const auto add = [&](const Row& row) {
     if (std::ranges::count(names, row.name()) == 0) names.push_back(row.name());
   };
-  for (const std::string& strategy : strategies) {
+  for (const std::string& strategy : given) {
     const Row row = rowNamed(strategy, "--strategies");
     if (integrators.empty() || row.integrator != IntegratorKind::Path)
       add(row);
     else
       for (const std::string& integrator : integrators)
         add(rowNamed(strategy + "+" + integrator, "--integrators"));
-  }
-  return names;
-}
-
-std::vector<std::string> resolveStrategies(const std::vector<std::string>& given) {
-  std::vector<std::string> names;
-  for (const std::string& name : given) {
-    std::vector<std::string> these;
-    if (name == "all")
-      for (const std::string_view known : strategyNames())
-        these.push_back(resolveStrategy(std::string(known)));
-    else
-      these.push_back(rowNamed(name, "--strategies").name());
-    for (const std::string& one : these)
-      if (std::find(names.begin(), names.end(), one) == names.end()) names.push_back(one);
   }
   return names;
 }
@@ -137,7 +128,7 @@ int planReferenceSamples(const CompareArguments& a, const std::vector<Budget>& b
 Study planStudy(const CompareArguments& a, const Command& command, Messages& notes) {
   Study study;
   study.folder = a.folder;
-  study.strategies = resolveRows(resolveStrategies(a.strategies), a.integrators);
+  study.strategies = resolveRows(a.strategies, a.integrators);
   notes = mergeEqualRows(study.strategies);
   study.budgets = planBudgets(a);
   if (a.repeats < Study::kMinRepeats)
@@ -178,24 +169,6 @@ void checkReference(const StudyRun& run, const Study& study) {
                study.referenceStrategy);
 }
 
-// The files of a report. Its renders are not among them, because they are read, not overwritten.
-struct ReportFiles {
-  explicit ReportFiles(const fs::path& folder)
-      : csv((folder / "results.csv").string()),
-        json((folder / "results.json").string()),
-        samples((folder / "samples.svg").string()),
-        seconds((folder / "seconds.svg").string()),
-        page((folder / "index.html").string()) {}
-  std::string csv, json, samples, seconds, page;
-};
-
-void checkOutputs(const ReportFiles& files, const CompareArguments& a, const LoadedScene& loaded) {
-  std::vector<std::string> inputs = loaded.files;
-  inputs.push_back(a.scene.scene);
-  inputs.push_back(a.reference);
-  checkDistinct({files.csv, files.json, files.samples, files.seconds, files.page}, inputs);
-}
-
 void compare(const CompareArguments& a, const Command& command) {
   SceneFile scene = openScene(a.scene.scene);
   const bool hadComposite = scene.composite.has_value();
@@ -212,8 +185,14 @@ void compare(const CompareArguments& a, const Command& command) {
   const ThreadLimit threads = threadLimit(a.scene.settings);
   const LoadedScene loaded = loadScene(description);
   description = loaded.description;
-  const ReportFiles files(a.folder);
-  checkOutputs(files, a, loaded);
+  // The renders in the folder are not among the outputs, because they are read, not overwritten.
+  const auto file = [&](const char* name) { return (fs::path(a.folder) / name).string(); };
+  const std::string csv = file("results.csv"), json = file("results.json"),
+                    samples = file("samples.svg"), seconds = file("seconds.svg"),
+                    page = file("index.html");
+  std::vector<std::string> inputs = loaded.files;
+  inputs.insert(inputs.end(), {a.scene.scene, a.reference});
+  checkDistinct({csv, json, samples, seconds, page}, inputs);
   description.settings.noiseLimit.reset();
   study.seed = description.settings.seed;
   study.identity = identityOf(loaded);
@@ -247,11 +226,11 @@ void compare(const CompareArguments& a, const Command& command) {
     about.directions.emplace_back(name, sampledDirections(run.strategy(name)));
   const auto write = [&](const StudyResults& r) {
     const Machine machine = thisMachine();
-    writeText(files.csv, resultsCsv(r));
-    writeText(files.json, jsonText(resultsJson(study, r, machine), 2) + "\n");
-    writeText(files.samples, samplesPlot(r));
-    writeText(files.seconds, secondsPlot(r));
-    writeText(files.page, reportHtml(study, store, r, about, machine));
+    writeText(csv, resultsCsv(r));
+    writeText(json, jsonText(resultsJson(study, r, machine), 2) + "\n");
+    writeText(samples, samplesPlot(r));
+    writeText(seconds, secondsPlot(r));
+    writeText(page, reportHtml(study, store, r, about, machine));
   };
   catchInterrupts();
   const bool whole = [&] {
