@@ -44,17 +44,11 @@ bool takeWords(const CLI::results_t& words, std::vector<Number>& numbers) {
 }
 
 template <class T>
-struct ElementOf {
-  using Type = T;
-};
+constexpr bool kIsOfNumbers = std::is_arithmetic_v<T>;
 template <class T>
-struct ElementOf<std::optional<T>> {
-  using Type = T;
-};
+constexpr bool kIsOfNumbers<std::optional<T>> = std::is_arithmetic_v<T>;
 template <class T>
-struct ElementOf<std::vector<T>> {
-  using Type = T;
-};
+constexpr bool kIsOfNumbers<std::vector<T>> = std::is_arithmetic_v<T>;
 
 // As CLI::App::add_option(), but for the conversion.
 template <class T>
@@ -98,7 +92,7 @@ Command Command::addCommand(const std::string& name, const std::string& help) {
 
 template <class T>
 Option Command::addOption(const std::string& names, T& value, const std::string& help) {
-  if constexpr (std::is_arithmetic_v<typename ElementOf<T>::Type>)
+  if constexpr (kIsOfNumbers<T>)
     return Option(addNumberOption(*app_, names, value, help));
   else
     return Option(app_->add_option(names, value, help));
