@@ -6,13 +6,12 @@
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/capture/find_circle.h"
 #include "probe/capture/photograph.h"
 #include "probe/convert.h"
 #include "probe/load.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {

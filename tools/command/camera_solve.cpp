@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "composite/plate.h"
 #include "front/arguments.h"
@@ -27,8 +26,6 @@
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct CameraSolveArguments {
   std::string model, plate, points, lines, fspy, output, preview;
@@ -180,20 +177,20 @@ std::vector<std::string> reportLines(const Solution& report) {
   return lines;
 }
 
-std::string reportJson(const Solution& report) {
+JsonValue toJson(const Solution& report) {
   const SolvedCamera& camera = report.camera;
-  Json json = {{"method", report.method},
-               {"size", {camera.size.width, camera.size.height}},
-               {"position", vectorToJson(camera.position)},
-               {"look_at", vectorToJson(lookAt(camera))},
-               {"up", vectorToJson(camera.axes[1])},
-               {"fov", glm::degrees(camera.fov())},
-               {"focal_length_35mm", equivalentOn35mm(camera.size, camera.focalLength)},
-               {"principal_point", {camera.principalPoint.x, camera.principalPoint.y}},
-               {"distortion", {camera.distortion.k1, camera.distortion.k2}}};
+  JsonValue json = {{"method", report.method},
+                    {"size", {camera.size.width, camera.size.height}},
+                    {"position", vectorToJson(camera.position)},
+                    {"look_at", vectorToJson(lookAt(camera))},
+                    {"up", vectorToJson(camera.axes[1])},
+                    {"fov", glm::degrees(camera.fov())},
+                    {"focal_length_35mm", equivalentOn35mm(camera.size, camera.focalLength)},
+                    {"principal_point", {camera.principalPoint.x, camera.principalPoint.y}},
+                    {"distortion", {camera.distortion.k1, camera.distortion.k2}}};
   const auto& fit = report.fit;
-  if (!fit) return jsonText(json, 2);
-  Json errors = {{"rotation", vectorToJson(glm::degrees(fit->errors.rotation))}};
+  if (!fit) return json;
+  JsonValue errors = {{"rotation", vectorToJson(glm::degrees(fit->errors.rotation))}};
   if (const auto& e = fit->errors.position) errors["position"] = vectorToJson(*e);
   if (const auto& e = fit->errors.fov) errors["fov"] = glm::degrees(*e);
   if (const auto& e = fit->errors.k1) errors["k1"] = *e;
@@ -203,7 +200,7 @@ std::string reportJson(const Solution& report) {
   if (fit->rivalRms) json["rival_rms"] = *fit->rivalRms;
   for (size_t i = 0; i < report.names.size(); ++i)
     json["distances"].push_back({{"name", report.names[i]}, {"pixels", fit->distances[i]}});
-  return jsonText(json, 2);
+  return json;
 }
 
 // The picked points are crosses, where the camera sees them are circles.
@@ -242,7 +239,7 @@ void run(const CameraSolveArguments& a, const Command& command) {
   add(doubtsAbout(solution.camera, bounds(scene)));
   print(messages);
   if (a.json)
-    fmt::print("{}\n", reportJson(solution));
+    printJson(toJson(solution));
   else
     for (const std::string& line : lines) fmt::print("{}\n", line);
 }

@@ -10,7 +10,7 @@
 #include "image/io/output_file.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "session/denoised_image.h"

@@ -11,7 +11,7 @@
 #include "front/develop_text.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "session/develop_image.h"
 

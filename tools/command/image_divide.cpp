@@ -8,7 +8,7 @@
 #include "image/flat_field.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 
 namespace chromeball {

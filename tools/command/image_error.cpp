@@ -5,13 +5,12 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "base/text.h"
 #include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
+#include "json_values.h"
 #include "measure/false_color.h"
 #include "measure/flip.h"
 #include "measure/image_error.h"
@@ -19,8 +18,6 @@
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ImageErrorArguments {
   std::string a, b, output, map = "relative";
@@ -32,21 +29,18 @@ struct Findings {
   std::optional<double> flip;  // mean
 };
 
-// JSON has no infinity or NaN: null.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json toJson(const Findings& findings) {
+JsonValue toJson(const Findings& findings) {
   const ImageError& error = findings.error;
-  Json json = {{"mse", number(error.mse)},   {"relmse", number(error.relMse)},
-               {"bias", number(error.bias)}, {"max_difference", number(error.maxDifference)},
-               {"psnr", number(error.psnr)}, {"invalid", error.invalid}};
+  JsonValue json = {{"mse", orNull(error.mse)},   {"relmse", orNull(error.relMse)},
+                    {"bias", orNull(error.bias)}, {"max_difference", orNull(error.maxDifference)},
+                    {"psnr", orNull(error.psnr)}, {"invalid", error.invalid}};
   if (const auto& z = error.zScores)
     json["z"] = {{"count", z->count},
-                 {"mean", number(z->mean)},
-                 {"sd", number(z->standardDeviation)},
-                 {"beyond_3_sigma", number(z->fractionBeyond3)},
-                 {"largest", number(z->largest)},
-                 {"p_value", number(z->pValue)}};
+                 {"mean", orNull(z->mean)},
+                 {"sd", orNull(z->standardDeviation)},
+                 {"beyond_3_sigma", orNull(z->fractionBeyond3)},
+                 {"largest", orNull(z->largest)},
+                 {"p_value", orNull(z->pValue)}};
   if (findings.flip) json["flip"] = *findings.flip;
   return json;
 }
@@ -135,10 +129,7 @@ void run(const ImageErrorArguments& arguments, const Command& command) {
   if (arguments.map == "z" && !findings.error.zScores)
     throwInput("--map: neither {} nor {} has a variance layer; render with --aov variance",
                arguments.a, arguments.b);
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(findings), 2));
-  else
-    print(findings);
+  arguments.json ? printJson(toJson(findings)) : print(findings);
   if (!arguments.output.empty())
     writeMap(arguments, arguments.map == "flip" ? flipped
                         : arguments.map == "z"

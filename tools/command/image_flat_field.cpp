@@ -2,21 +2,17 @@
 // chromeball image flat-field SERIES... -o F.exr
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/flat_field.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "json_values.h"
 #include "messages.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ImageFlatFieldArguments {
   std::vector<std::string> files, positions;
@@ -58,8 +54,8 @@ Series measure(const ImageFlatFieldArguments& arguments) {
   return series;
 }
 
-Json toJson(const FlatField& field, const Series& series) {
-  Json samples = Json::array();
+JsonValue toJson(const FlatField& field, const Series& series) {
+  JsonValue samples = JsonValue::array();
   for (const SourceSample& sample : series.samples)
     samples.push_back({{"position", {sample.position.x, sample.position.y}},
                        {"radiance", vectorToJson(sample.radiance)}});
@@ -115,10 +111,7 @@ void run(const ImageFlatFieldArguments& arguments) {
         "the samples differ from the fit by {:.2g}%: is the source constant, and of "
         "even radiance within --radius?",
         100 * error);
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(field, series), 2));
-  else
-    print(field, series);
+  arguments.json ? printJson(toJson(field, series)) : print(field, series);
   print(writeImage(arguments.output, field.image(width, height)));
 }
 

@@ -12,13 +12,13 @@
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "probe/probe.h"
 #include "probe/sun_extraction.h"
+#include "probe_options.h"
 #include "relight/stage/light_layers.h"
-#include "rotation_option.h"
 
 namespace chromeball {
 namespace {
@@ -156,43 +156,43 @@ std::string gainsInWords(const ImageRelightArguments& a, const Metadata& metadat
 // sources are; of the sources, the paths from them, their samples and the file.
 constexpr const char* kOfNoise[] = {"noise", "noise_median", "noise_p95", "denoised_noise",
                                     "clamp_light_removed"};
-constexpr const char* kOfLight[] = {"probe",
-                                    "probe-mapping",
-                                    "probe-found",
-                                    "probe-rotation",
-                                    "probe-scale",
-                                    "files",
-                                    "lights",
-                                    "light-units",
-                                    "light-from",
-                                    "sun-angle",
-                                    "show-lights",
-                                    "strategy",
-                                    "mis",
-                                    "guide",
-                                    "regularize",
-                                    "clamp",
-                                    "denoise",
-                                    "integrator",
-                                    "ao",
-                                    "reflection-occlusion",
-                                    "irradiance-cache",
-                                    "max-depth",
-                                    "max-diffuse-depth",
-                                    "max-specular-depth",
-                                    "max-transmission-depth",
-                                    "glass-shadows",
-                                    "samples",
-                                    "samplesOfAll",
-                                    "adaptive",
-                                    "seed",
-                                    "shard",
-                                    "noise-limit",
-                                    "time-limit",
-                                    "rays",
-                                    "seconds",
-                                    "command",
-                                    "aov"};
+constexpr auto kOfLight = std::to_array<const char*>({"probe",
+                                                      "probe-mapping",
+                                                      "probe-found",
+                                                      "probe-rotation",
+                                                      "probe-scale",
+                                                      "files",
+                                                      "lights",
+                                                      "light-units",
+                                                      "light-from",
+                                                      "sun-angle",
+                                                      "show-lights",
+                                                      "strategy",
+                                                      "mis",
+                                                      "guide",
+                                                      "regularize",
+                                                      "clamp",
+                                                      "denoise",
+                                                      "integrator",
+                                                      "ao",
+                                                      "reflection-occlusion",
+                                                      "irradiance-cache",
+                                                      "max-depth",
+                                                      "max-diffuse-depth",
+                                                      "max-specular-depth",
+                                                      "max-transmission-depth",
+                                                      "glass-shadows",
+                                                      "samples",
+                                                      "samplesOfAll",
+                                                      "adaptive",
+                                                      "seed",
+                                                      "shard",
+                                                      "noise-limit",
+                                                      "time-limit",
+                                                      "rays",
+                                                      "seconds",
+                                                      "command",
+                                                      "aov"});
 
 // The file's attributes without those that are no longer true, and how it was relit.
 Metadata relitMetadata(const ImageRelightArguments& arguments, const ImageFile& file) {

@@ -8,7 +8,7 @@
 #include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "layer_view.h"
 #include "messages.h"
 #include "session/image_header.h"

@@ -12,7 +12,6 @@
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "light_options.h"
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_preview.h"
 #include "lighting/fit/light_descent.h"
@@ -20,8 +19,8 @@
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
+#include "probe_options.h"
 #include "progress_bar.h"
-#include "rotation_option.h"
 
 namespace chromeball {
 namespace {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "light_options.h"
 #include "lighting/export/light_file.h"
 #include "lighting/methods.h"
 #include "math/rotation.h"
+#include "probe_options.h"
 
 namespace chromeball {
 

@@ -9,12 +9,12 @@
 #include "base/progress.h"
 #include "commands.h"
 #include "image/io/output_file.h"
-#include "light_options.h"
 #include "lighting/fit/light_descent.h"
 #include "lighting/methods.h"
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
+#include "probe_options.h"
 #include "progress_bar.h"
 #include "study/report/log_log_plot.h"
 

@@ -4,23 +4,19 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
+#include "json_values.h"
 #include "messages.h"
 #include "probe/capture/align.h"
 #include "probe/convert.h"
 #include "probe/load.h"
 #include "progress_bar.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ProbeAlignArguments {
   std::string first, second, out, firstMapping = "auto", secondMapping = "auto";
@@ -29,7 +25,7 @@ struct ProbeAlignArguments {
 
 constexpr double kPoor = 0.5;  // correlation
 
-Json toJson(const ProbeFit& fit) {
+JsonValue toJson(const ProbeFit& fit) {
   const Rotation::Angles angles = fit.rotation.angles();
   const glm::dquat q = fit.rotation.quaternion();
   return {{"yaw", angles.yaw},
@@ -39,16 +35,15 @@ Json toJson(const ProbeFit& fit) {
           {"correlation", fit.correlation}};
 }
 
-Json toJson(const ProbeAlignArguments& arguments, const ProbeAlignment& alignment) {
-  Json json = {{"a", arguments.first}, {"b", arguments.second}};
+JsonValue toJson(const ProbeAlignArguments& arguments, const ProbeAlignment& alignment) {
+  JsonValue json = {{"a", arguments.first}, {"b", arguments.second}};
   json.update(toJson(static_cast<const ProbeFit&>(alignment)));
   const dvec3& errors = alignment.standardErrors;
   json["standard_error"] = alignment.standardError();
-  json["standard_errors_xyz"] = {errors.x, errors.y, errors.z};
+  json["standard_errors_xyz"] = vectorToJson(errors);
   json["ambiguous"] = !alignment.others.empty();
-  json["axis"] = alignment.axis ? Json{alignment.axis->x, alignment.axis->y, alignment.axis->z}
-                                : Json(nullptr);
-  json["others"] = Json::array();
+  json["axis"] = alignment.axis ? vectorToJson(*alignment.axis) : JsonValue();
+  json["others"] = JsonValue::array();
   for (const ProbeFit& fit : alignment.others) json["others"].push_back(toJson(fit));
   return json;
 }
@@ -96,10 +91,7 @@ void run(const ProbeAlignArguments& arguments) {
   std::optional<BusyLine> busy("aligning");
   const ProbeAlignment alignment = alignProbes(first, second, arguments.first, arguments.second);
   busy.reset();
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(arguments, alignment), 2));
-  else
-    print(alignment);
+  arguments.json ? printJson(toJson(arguments, alignment)) : print(alignment);
   std::fflush(stdout);
   warnOfDoubt(alignment);
   if (!arguments.out.empty())

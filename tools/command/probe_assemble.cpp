@@ -5,22 +5,19 @@
 #include <algorithm>
 
 #include "assemble_options.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "image/io/write_image.h"
+#include "image_files.h"
+#include "json_values.h"
 #include "messages.h"
 #include "probe/capture/assemble.h"
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
 #include "probe/solid_angle.h"
 #include "progress_bar.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Report {
   const AssembleArguments& arguments;
@@ -31,23 +28,24 @@ struct Report {
   const AssemblyTarget& target;
 };
 
-Json toJson(const Report& report) {
-  Json views = Json::array();
+JsonValue toJson(const Report& report) {
+  JsonValue views = JsonValue::array();
   for (size_t i = 0; i < report.views.size(); ++i) {
     const AssemblyPhotograph& p = report.photographs[i];
     const ViewMatch& match = report.matches[i];
-    views.push_back({{"file", p.file},
-                     {"circle", {p.circle.centre.x, p.circle.centre.y, p.circle.radius}},
-                     {"circle_support", p.found ? Json(p.found->support) : Json()},
-                     {"circle_standard_error", p.found ? Json(p.found->standardError) : Json()},
-                     {"azimuth", report.views[i].camera().azimuth},
-                     {"elevation", report.views[i].camera().elevation},
-                     {"overlap", match.overlap},
-                     {"correlation", match.correlation},
-                     {"turn", match.turn},
-                     {"turn_found", match.turned},
-                     {"gain", match.gain},
-                     {"gain_found", match.exposed}});
+    views.push_back(
+        {{"file", p.file},
+         {"circle", {p.circle.centre.x, p.circle.centre.y, p.circle.radius}},
+         {"circle_support", p.found ? JsonValue(p.found->support) : JsonValue()},
+         {"circle_standard_error", p.found ? JsonValue(p.found->standardError) : JsonValue()},
+         {"azimuth", report.views[i].camera().azimuth},
+         {"elevation", report.views[i].camera().elevation},
+         {"overlap", match.overlap},
+         {"correlation", match.correlation},
+         {"turn", match.turn},
+         {"turn_found", match.turned},
+         {"gain", match.gain},
+         {"gain_found", match.exposed}});
   }
   return {{"views", views},
           {"blind_share", report.assembly.blindShare},
@@ -181,10 +179,7 @@ void run(const AssembleArguments& arguments, const Command& command) {
   warnOf(report);
   writeProbe(arguments.out, probe, target.mapping);
   if (!arguments.preview.empty()) print(writeImage(arguments.preview, preview(report)));
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(report), 2));
-  else
-    print(report);
+  arguments.json ? printJson(toJson(report)) : print(report);
 }
 
 }  // namespace

@@ -10,16 +10,15 @@
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image/io/write_ktx2.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/convert.h"
 #include "probe/convolve.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe/prefiltered_probe.h"
+#include "probe_options.h"
 #include "progress_bar.h"
-#include "rotation_option.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {

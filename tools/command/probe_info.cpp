@@ -3,20 +3,16 @@
 #include <cstdio>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "json_values.h"
 #include "messages.h"
 #include "probe/info.h"
 #include "probe/load.h"
 #include "probe/solid_angle.h"
-#include "rotation_option.h"
+#include "probe_options.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ProbeInfoArguments {
   std::string file, mapping = "auto";
@@ -24,8 +20,8 @@ struct ProbeInfoArguments {
   bool json = false, mappingReport = false;
 };
 
-Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& file) {
-  Json suns = Json::array(), shares = Json::array();
+JsonValue toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& file) {
+  JsonValue suns = JsonValue::array(), shares = JsonValue::array();
   for (const Sun& sun : info.suns)
     suns.push_back({{"direction", vectorToJson(sun.direction)},
                     {"irradiance", vectorToJson(sun.irradiance)},
@@ -46,7 +42,7 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
           {"share_at_max", probe.fractionAtMaximum},
           {"dynamic_range", info.dynamicRange},
           {"max_over_mean", info.maxOverMean},
-          {"robust_range", std::isfinite(info.robustRange) ? Json(info.robustRange) : Json()},
+          {"robust_range", orNull(info.robustRange)},
           {"plateau",
            {{"texels", info.plateau.texels},
             {"solid_angle", info.plateau.solidAngle},
@@ -56,8 +52,8 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
            {{"nan", probe.repair.nan},
             {"infinite", probe.repair.infinite},
             {"negative", probe.repair.negative},
-            {"first", probe.repair.total() > 0 ? Json{probe.repair.firstX, probe.repair.firstY}
-                                               : Json(nullptr)}}},
+            {"first", probe.repair.total() > 0 ? JsonValue{probe.repair.firstX, probe.repair.firstY}
+                                               : JsonValue(nullptr)}}},
           {"mean_radiance", vectorToJson(info.meanRadiance)},
           {"brightest",
            {{"direction", vectorToJson(info.brightestDirection)},
@@ -71,7 +67,7 @@ std::string triple(const Vector& v) {
   return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z);
 }
 
-Json toJson(const TexelSolidAngles& angles) {
+JsonValue toJson(const TexelSolidAngles& angles) {
   return {{"min_solid_angle", angles.min},
           {"max_solid_angle", angles.max},
           {"max_over_min", angles.max / angles.min},
@@ -141,9 +137,9 @@ void run(const ProbeInfoArguments& arguments) {
     return texelSolidAngles(probe.mapping, {probe.fileWidth, probe.fileHeight});
   };
   if (arguments.json) {
-    Json json = toJson(probe, info, arguments.file);
+    JsonValue json = toJson(probe, info, arguments.file);
     if (arguments.mappingReport) json["mapping_report"] = toJson(angles());
-    fmt::print("{}\n", jsonText(json, 2));
+    printJson(json);
   } else {
     print(probe, info);
     if (arguments.mappingReport) print(probe, angles());

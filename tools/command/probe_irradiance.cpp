@@ -8,13 +8,12 @@
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
+#include "probe_options.h"
 #include "progress_bar.h"
-#include "rotation_option.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {

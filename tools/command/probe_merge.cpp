@@ -2,22 +2,18 @@
 // chromeball probe merge 1.jpg 2.jpg ... -o hdr.exr
 #include "base/error.h"
 #include "base/file.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "command.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "json_values.h"
 #include "messages.h"
 #include "probe/capture/merge_photographs.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ProbeMergeArguments {
   std::vector<std::string> files, ratios, filters, flatFields, calibration;
@@ -106,11 +102,8 @@ PhotographSeries seriesOf(const ProbeMergeArguments& a) {
   return series;
 }
 
-Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
-Json orNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
-Json toJson(const PhotographSeries& series, const MergedPhotographs& merged) {
-  Json exposures = Json::array(), agreements = Json::array();
+JsonValue toJson(const PhotographSeries& series, const MergedPhotographs& merged) {
+  JsonValue exposures = JsonValue::array(), agreements = JsonValue::array();
   for (size_t i = 0; i < series.files.size(); ++i)
     exposures.push_back({{"file", series.files[i]},
                          {"time", merged.settings[i].time},
@@ -201,10 +194,7 @@ void merge(const ProbeMergeArguments& arguments) {
 
   MergedPhotographs merged = mergePhotographs(series);
   print(merged.messages);
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(series, merged), 2));
-  else
-    print(series, merged);
+  arguments.json ? printJson(toJson(series, merged)) : print(series, merged);
   if (!arguments.responseOutput.empty()) merged.response.write(arguments.responseOutput);
   print(writeImage(arguments.output, OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
                                                   {"clipped", "", std::move(merged.image.clipped)}},
@@ -270,10 +260,9 @@ void calibrate(const ProbeMergeArguments& arguments, const Command& command) {
       break;
     }
   if (arguments.json)
-    fmt::print("{}\n", jsonText(Json{{"transmission", vectorToJson(t)},
-                                     {"median", vectorToJson(filter.median)},
-                                     {"pixels", filter.pixels}},
-                                2));
+    printJson(JsonValue{{"transmission", vectorToJson(t)},
+                        {"median", vectorToJson(filter.median)},
+                        {"pixels", filter.pixels}});
   else
     fmt::print("transmission    {:.5g},{:.5g},{:.5g} of {} pixels\n", t.x, t.y, t.z, filter.pixels);
 }

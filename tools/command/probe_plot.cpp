@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "study/report/row_distribution.h"

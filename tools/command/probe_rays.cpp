@@ -3,23 +3,19 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "front/arguments.h"
-#include "input_image.h"
+#include "image_files.h"
+#include "json_values.h"
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/convert.h"
 #include "probe/load.h"
 #include "probe/random_rays.h"
-#include "rotation_option.h"
-#include "write_probe.h"
+#include "probe_options.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ProbeRaysArguments {
   std::string file, mapping = "auto", size;
@@ -68,18 +64,18 @@ struct Normals {
 };
 
 // A whole number in JSON where that has one.
-Json countOf(double rays) {
+JsonValue countOf(double rays) {
   constexpr double kLargest = 9e18;
-  return rays < kLargest ? Json(uint64_t(rays)) : Json(rays);
+  return rays < kLargest ? JsonValue(uint64_t(rays)) : JsonValue(rays);
 }
 
-Json toJson(const ProbeRaysArguments& arguments, const Normals& normals) {
-  Json rays, variances;
+JsonValue toJson(const ProbeRaysArguments& arguments, const Normals& normals) {
+  JsonValue rays, variances;
   for (const Sampling& sampling : kSamplings) {
-    Json raysHere, variancesHere;
+    JsonValue raysHere, variancesHere;
     const auto add = [&](const char* normal, double variance, bool isLit) {
-      raysHere[normal] = isLit ? countOf(raysForError(variance, arguments.error)) : Json();
-      variancesHere[normal] = isLit ? Json(variance) : Json();
+      raysHere[normal] = isLit ? countOf(raysForError(variance, arguments.error)) : JsonValue();
+      variancesHere[normal] = isLit ? JsonValue(variance) : JsonValue();
     };
     const bool isLit = !normals.lit.empty();
     const Summary summary = isLit ? normals.summary(sampling) : Summary{};
@@ -126,10 +122,7 @@ void run(const ProbeRaysArguments& arguments) {
   LoadedProbe probe = openProbe(arguments.file, arguments.mapping, "--mapping");
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
   const Normals normals(probe.latLong, arguments.rotation);
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(arguments, normals), 2));
-  else
-    print(arguments, normals);
+  arguments.json ? printJson(toJson(arguments, normals)) : print(arguments, normals);
 }
 
 }  // namespace

@@ -2,11 +2,9 @@
 // chromeball probe reflectivity PHOTO --direct X,Y,W,H --reflected X,Y,W,H
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "front/arguments.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "json_values.h"
 #include "messages.h"
 #include "probe/capture/reflectivity.h"
@@ -14,7 +12,6 @@
 namespace chromeball {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using glm::dvec3;
 
 struct ProbeReflectivityArguments {
@@ -70,7 +67,7 @@ PatchMean denominator(const ProbeReflectivityArguments& arguments, const Photogr
   return patchMean(standard.image, rectangle, standard.saturation, "--direct");
 }
 
-Json toJson(const PatchMean& patch) {
+JsonValue toJson(const PatchMean& patch) {
   return {{"mean", vectorToJson(patch.mean)},
           {"standard_error", vectorToJson(patch.standardError)},
           {"pixels", patch.pixels}};
@@ -91,14 +88,14 @@ void run(const ProbeReflectivityArguments& arguments) {
   if (std::max({result.value.x, result.value.y, result.value.z}) > 1)
     warn("a reflectivity above 1: are the rectangles exchanged, or lit differently?");
   if (arguments.json) {
-    const Json json = {{"file", arguments.photograph},
-                       {"reflectivity", vectorToJson(result.value)},
-                       {"standard_error", vectorToJson(result.standardError)},
-                       {"percent", percent},
-                       {"reflected", toJson(reflected)},
-                       {"direct", toJson(direct)},
-                       {"standard_reflectance", vectorToJson(standard)}};
-    fmt::print("{}\n", jsonText(json, 2));
+    const JsonValue json = {{"file", arguments.photograph},
+                            {"reflectivity", vectorToJson(result.value)},
+                            {"standard_error", vectorToJson(result.standardError)},
+                            {"percent", percent},
+                            {"reflected", toJson(reflected)},
+                            {"direct", toJson(direct)},
+                            {"standard_reflectance", vectorToJson(standard)}};
+    printJson(json);
     return;
   }
   const auto triple = [](const dvec3& v) {

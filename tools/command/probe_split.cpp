@@ -9,12 +9,12 @@
 #include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "light_options.h"
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_list.h"
 #include "messages.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"
+#include "probe_options.h"
 
 namespace chromeball {
 namespace {

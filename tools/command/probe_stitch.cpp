@@ -10,11 +10,10 @@
 #include "front/tile_file.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/capture/stitch.h"
 #include "progress_bar.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {

@@ -3,27 +3,22 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "json_values.h"
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_list.h"
 #include "messages.h"
 #include "probe/capture/sun_from_ball.h"
 #include "probe/synth.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {
 
 constexpr double kSeldomExplained = 0.2;  // of the mean: another direction, or another ball
-
-using Json = nlohmann::ordered_json;
 
 struct ProbeSunArguments {
   std::string probe, mapping = "auto", ball, circle, paint, camera, distance, direction, mask;
@@ -135,9 +130,9 @@ void writeResidual(const std::string& path, const SunFromBall& result, const Bal
   print(writeImage(path, image));
 }
 
-Json toJson(const SunFromBall& result, const Direction& direction, const BallSamples& ball) {
+JsonValue toJson(const SunFromBall& result, const Direction& direction, const BallSamples& ball) {
   return {{"direction", vectorToJson(result.sun.direction)},
-          {"clipped_width", direction.width ? Json(*direction.width) : Json(nullptr)},
+          {"clipped_width", orNull(direction.width)},
           {"angle", result.sun.angle},
           {"alpha", vectorToJson(result.alpha)},
           {"irradiance", vectorToJson(result.sun.irradiance)},
@@ -190,10 +185,8 @@ void run(const ProbeSunArguments& arguments) {
         "the ball differs by {:.3g}% of its mean from what probe and sun make it, by "
         "{:.3g}% without the sun: check --camera, --direction, --circle and --paint",
         100 * result.rms, 100 * result.rmsOfProbe);
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(result, direction, samples), 2));
-  else
-    print(result, direction, samples);
+  arguments.json ? printJson(toJson(result, direction, samples))
+                 : print(result, direction, samples);
   const Sun& sun = result.sun;
   if (!arguments.residual.empty()) writeResidual(arguments.residual, result, samples);
   if (!arguments.lights.empty())

@@ -9,8 +9,8 @@
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/write_image.h"
+#include "image_files.h"
 #include "probe/synth.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {

@@ -9,7 +9,7 @@
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "rotation_option.h"
+#include "probe_options.h"
 
 namespace chromeball {
 namespace {

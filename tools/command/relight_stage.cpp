@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "input_image.h"
 #include "relight.h"
 
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "relight/stage/light_stage.h"

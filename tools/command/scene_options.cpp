@@ -61,32 +61,12 @@ constexpr std::string_view kOfBake[] = {
     "animation",      "animation-time", "variant",        "camera",      "memory",    "threads",
     "texture-memory", "allow-external", "progress",       "quiet"};
 
-// Options that decide the picture, and none about its light, which comes from everywhere.
-constexpr std::string_view kOfBasis[] = {"size",
-                                         "samples",
-                                         "seed",
-                                         "max-depth",
-                                         "max-diffuse-depth",
-                                         "max-specular-depth",
-                                         "max-transmission-depth",
-                                         "mis",
-                                         "glass-shadows",
-                                         "single-sided",
-                                         "transparent",
-                                         "light-units",
-                                         "animation",
-                                         "animation-time",
-                                         "variant",
-                                         "camera",
-                                         "camera-file",
-                                         "memory",
-                                         "threads",
-                                         "texture-memory",
-                                         "allow-external",
-                                         "progress",
-                                         "quiet"};
-
-// The options among these that vertices do not need.
+// Options that decide the picture, and none about its light, which comes from everywhere: at
+// vertices, and the further ones at pixels.
+constexpr std::string_view kOfVertices[] = {
+    "samples",        "seed",           "max-depth", "glass-shadows", "single-sided", "light-units",
+    "animation",      "animation-time", "variant",   "camera",        "memory",       "threads",
+    "texture-memory", "allow-external", "progress",  "quiet"};
 constexpr std::string_view kOfPixels[] = {
     "size", "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
     "mis",  "transparent",       "camera-file"};
@@ -181,9 +161,9 @@ bool isOptionOf(SceneCommand command, const Setting& setting) {
     case SceneCommand::Bake:
       return isIn(kOfBake);
     case SceneCommand::Basis:
-      return isIn(kOfBasis);
+      return isIn(kOfVertices) || isIn(kOfPixels);
     case SceneCommand::BasisVertices:
-      return isIn(kOfBasis) && !isIn(kOfPixels);
+      return isIn(kOfVertices);
     case SceneCommand::Compare:
       return !setting.renderOnly;
     default:
