@@ -36,7 +36,7 @@ size_t indexOf(const std::string& name, const char* const (&names)[N], const cha
   return size_t(found - std::begin(names));
 }
 
-void checkRange(const char* option, const std::optional<int64_t>& number, int least, int most) {
+void checkTexels(const char* option, const std::optional<int64_t>& number, int least, int most) {
   if (number && (*number < least || *number > most))
     throwInput("{}: should be a whole number from {} to {} (texels)", option, least, most);
 }
@@ -61,8 +61,8 @@ void check(const BakeOptions& a, const Command& command) {
   constexpr const char* kTargets[] = {"lightmap", "vertices"};
   const BakedLight what = a.light();
   indexOf(a.to, kTargets, "--to");
-  checkRange("--size", a.size, kMinPage, kMaxPage);
-  checkRange("--padding", a.padding, 0, kMaxPadding);
+  checkTexels("--size", a.size, kMinPage, kMaxPage);
+  checkTexels("--padding", a.padding, 0, kMaxPadding);
   if (a.size && a.texel) throwInput("--texel: excludes --size; give one");
   if (a.texel && !(*a.texel > 0 && std::isfinite(*a.texel)))
     throwInput("--texel: should be a length above 0 (metres)");

@@ -149,7 +149,9 @@ void addLightsErrorCommand(Command app) {
       .addOption("--recursion", a.levels,
                  "median-cut: in place of --counts, how often all regions are cut: 1,2,3,...")
       .delimiter(',');
-  command.addWithDefault("--normals", a.normals, kNormalsHelp);
+  command.addWithDefault(
+      "--normals", a.normals,
+      "number of surface orientations to compare: 20 times a power of 4, up to 1310720");
   command.addOption("--csv", a.csv, "write the table to this file");
   command.addOption("--plot", a.plot, "write a plot of the table to this .svg");
   command.addOption("--seed", a.seed, "of stochastic methods");

@@ -13,9 +13,6 @@
 
 namespace chromeball {
 
-inline constexpr const char* kNormalsHelp =
-    "number of surface orientations to compare: 20 times a power of 4, up to 1310720";
-
 inline constexpr const char* kMaskHelp = "directions that give no light: none or below-horizon";
 
 // The probe of a command about lights.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe rays PROBE
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "base/error.h"
 #include "commands.h"
@@ -24,44 +26,46 @@ struct ProbeRaysArguments {
   bool json = false;
 };
 
+constexpr const char* kRayNormals[] = {"upward", "median", "max"};
+
 struct Sampling {
   const char* name;
-  double RayVariance::*variance;
-};
-constexpr Sampling kSamplings[] = {{"uniform", &RayVariance::uniform},
-                                   {"cosine", &RayVariance::cosine},
-                                   {"luminance", &RayVariance::luminance}};
-
-// Relative variances of one sampling.
-struct Summary {
-  double upward, median, max;
+  // Relative ones for each of kRayNormals, if it receives light.
+  std::array<std::optional<double>, 3> variances;
 };
 
-struct Normals {
-  RayVariance upward;
-  std::vector<RayVariance> lit;  // of the icosphere's, those with light
-  size_t count = 0;
+struct RayReport {
+  size_t normals, unlit;
+  std::vector<Sampling> samplings;
+};
 
-  Normals(const Image& latLong, const Rotation& rotation) {
-    constexpr int kSubdivisions = 3;  // 1280 normals
-    std::vector<vec3> normals = icosphereNormals(kSubdivisions);
-    count = normals.size();
-    normals.push_back(rotation.back(vec3(0, 1, 0)));
-    lit = rayVariances(latLong, normals);
-    upward = lit.back();
-    lit.pop_back();
-    std::erase_if(lit, [](const RayVariance& v) { return v.irradiance == 0; });
+RayReport reportOf(const Image& latLong, const Rotation& rotation) {
+  constexpr int kSubdivisions = 3;  // 1280 normals
+  std::vector<vec3> normals = icosphereNormals(kSubdivisions);
+  const size_t count = normals.size();
+  normals.push_back(rotation.back(vec3(0, 1, 0)));
+  std::vector<RayVariance> lit = rayVariances(latLong, normals);
+  const RayVariance upward = lit.back();
+  lit.pop_back();
+  std::erase_if(lit, [](const RayVariance& v) { return v.irradiance == 0; });
+  RayReport report{count, count - lit.size(), {}};
+  for (const auto& [name, variance] :
+       {std::pair("uniform", &RayVariance::uniform), std::pair("cosine", &RayVariance::cosine),
+        std::pair("luminance", &RayVariance::luminance)}) {
+    Sampling sampling{name, {}};
+    if (upward.irradiance > 0) sampling.variances[0] = upward.*variance;
+    if (!lit.empty()) {
+      std::vector<double> all;
+      for (const RayVariance& v : lit) all.push_back(v.*variance);
+      const auto middle = all.begin() + ptrdiff_t(all.size() / 2);
+      std::nth_element(all.begin(), middle, all.end());
+      sampling.variances[1] = *middle;
+      sampling.variances[2] = *std::ranges::max_element(all);
+    }
+    report.samplings.push_back(sampling);
   }
-
-  // There is at least one lit normal.
-  Summary summary(const Sampling& sampling) const {
-    std::vector<double> all;
-    for (const RayVariance& v : lit) all.push_back(v.*sampling.variance);
-    const auto middle = all.begin() + ptrdiff_t(all.size() / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    return {upward.*sampling.variance, *middle, *std::max_element(all.begin(), all.end())};
-  }
-};
+  return report;
+}
 
 // A whole number in JSON where that has one.
 JsonValue countOf(double rays) {
@@ -69,45 +73,35 @@ JsonValue countOf(double rays) {
   return rays < kLargest ? JsonValue(uint64_t(rays)) : JsonValue(rays);
 }
 
-JsonValue toJson(const ProbeRaysArguments& arguments, const Normals& normals) {
+JsonValue toJson(const ProbeRaysArguments& arguments, const RayReport& report) {
   JsonValue rays, variances;
-  for (const Sampling& sampling : kSamplings) {
-    JsonValue raysHere, variancesHere;
-    const auto add = [&](const char* normal, double variance, bool isLit) {
-      raysHere[normal] = isLit ? countOf(raysForError(variance, arguments.error)) : JsonValue();
-      variancesHere[normal] = isLit ? JsonValue(variance) : JsonValue();
-    };
-    const bool isLit = !normals.lit.empty();
-    const Summary summary = isLit ? normals.summary(sampling) : Summary{};
-    add("upward", summary.upward, normals.upward.irradiance > 0);
-    add("median", summary.median, isLit);
-    add("max", summary.max, isLit);
-    rays[sampling.name] = raysHere;
-    variances[sampling.name] = variancesHere;
-  }
+  for (const auto& [name, ofNormals] : report.samplings)
+    for (size_t i = 0; i < ofNormals.size(); ++i) {
+      const std::optional<double>& variance = ofNormals[i];
+      rays[name][kRayNormals[i]] =
+          variance ? countOf(raysForError(*variance, arguments.error)) : JsonValue();
+      variances[name][kRayNormals[i]] = orNull(variance);
+    }
   return {{"file", arguments.file},
           {"error", arguments.error},
-          {"normals", normals.count},
-          {"unlit_normals", normals.count - normals.lit.size()},
+          {"normals", report.normals},
+          {"unlit_normals", report.unlit},
           {"rays", rays},
           {"relative_variance", variances}};
 }
 
-void print(const ProbeRaysArguments& arguments, const Normals& normals) {
+void print(const ProbeRaysArguments& arguments, const RayReport& report) {
+  const auto rays = [&](const std::optional<double>& variance) {
+    return variance ? fmt::format("{:.15g}", raysForError(*variance, arguments.error)) : "no light";
+  };
   fmt::print("rays for an error of {:.4g}% of the irradiance, unoccluded\n", 100 * arguments.error);
   fmt::print("{:<10} {:>14} {:>14} {:>14}\n", "sampling", "upward", "median", "max");
-  for (const Sampling& sampling : kSamplings) {
-    const auto rays = [&](double variance, bool isLit) {
-      return isLit ? fmt::format("{:.15g}", raysForError(variance, arguments.error)) : "no light";
-    };
-    const bool isLit = !normals.lit.empty();
-    const Summary summary = isLit ? normals.summary(sampling) : Summary{};
-    fmt::print("{:<10} {:>14} {:>14} {:>14}\n", sampling.name,
-               rays(summary.upward, normals.upward.irradiance > 0), rays(summary.median, isLit),
-               rays(summary.max, isLit));
-  }
-  if (const size_t unlit = normals.count - normals.lit.size())
-    fmt::print("{} of {} normals receive no light and are left out\n", unlit, normals.count);
+  for (const auto& [name, variances] : report.samplings)
+    fmt::print("{:<10} {:>14} {:>14} {:>14}\n", name, rays(variances[0]), rays(variances[1]),
+               rays(variances[2]));
+  if (report.unlit > 0)
+    fmt::print("{} of {} normals receive no light and are left out\n", report.unlit,
+               report.normals);
 }
 
 void run(const ProbeRaysArguments& arguments) {
@@ -121,8 +115,8 @@ void run(const ProbeRaysArguments& arguments) {
           : std::optional(checkedSize(arguments.file, parseSize(arguments.size, "--size")));
   LoadedProbe probe = openProbe(arguments.file, arguments.mapping, "--mapping");
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
-  const Normals normals(probe.latLong, arguments.rotation);
-  arguments.json ? printJson(toJson(arguments, normals)) : print(arguments, normals);
+  const RayReport report = reportOf(probe.latLong, arguments.rotation);
+  arguments.json ? printJson(toJson(arguments, report)) : print(arguments, report);
 }
 
 }  // namespace
