@@ -127,10 +127,10 @@ inline void inMilliseconds(benchmark::internal::Benchmark* benchmark) {
   benchmark->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
-// CPU time of this thread.
-inline double cpuSeconds() {
+// CPU time, of this thread unless the clock is another.
+inline double cpuSeconds(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
   timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  clock_gettime(clock, &t);
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 

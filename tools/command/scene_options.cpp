@@ -176,9 +176,8 @@ bool SceneOptions::showsProgress() const {
 }
 
 void addSceneOptions(Command app, SceneOptions& options, SceneCommand command) {
-  app.addOption("scene", options.scene, "Scene file (.toml) or model (.gltf, .glb)")
-      .typeName("SCENE")
-      .required();
+  app.addRequired("scene", options.scene, "Scene file (.toml) or model (.gltf, .glb)")
+      .typeName("SCENE");
   for (const Setting& setting : settingTable())
     if (!setting.option.empty() && isOptionOf(command, setting))
       addSettingOption(app, setting, options.settings);

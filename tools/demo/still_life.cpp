@@ -2,7 +2,7 @@
 #include "gallery.h"
 
 #include "glb_objects.h"
-#include "noise.h"
+#include "texels.h"
 
 namespace chromeball::demo {
 namespace {

@@ -6,8 +6,8 @@
 #include "flat.h"
 #include "gallery.h"
 #include "glb_objects.h"
-#include "noise.h"
 #include "stone.h"
+#include "texels.h"
 
 namespace chromeball::demo {
 namespace {

@@ -3,9 +3,8 @@
 
 #include "flat.h"
 #include "glb_objects.h"
-#include "noise.h"
 #include "probe/synth.h"
-#include "round_texels.h"
+#include "texels.h"
 
 namespace chromeball::demo {
 namespace {
