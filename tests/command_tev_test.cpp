@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render --display tev, with a receiver that decodes the packets by the description of
-// the protocol (viewers/tev_packet.h).
+// the protocol (viewers/tev_display.cpp).
 #include <gtest/gtest.h>
 
 #include <cstring>

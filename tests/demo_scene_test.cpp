@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "demo/still_life.h"
+#include "demo/gallery.h"
 #include "math/icosphere.h"
 #include "run_command.h"
 #include "scene/gltf/load_gltf.h"

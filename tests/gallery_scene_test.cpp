@@ -13,7 +13,6 @@
 #include "base/json.h"
 #include "demo/doric.h"
 #include "demo/gallery.h"
-#include "demo/nave.h"
 #include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cost of differential rendering relative to one plain render of the whole scene, alternating,
 // both with one thread: the still life on its table, with the table as the local scene.
-#include <benchmark/benchmark.h>
-
 #include "composite/differential.h"
 #include "scene.h"
 
@@ -40,12 +38,8 @@ void differential(benchmark::State& state, demo::Finish finish) {
     state.SkipWithError("L_obj is not what the plain render makes of it");
   state.counters["cost over a plain render"] = both / plain;
 }
-BENCHMARK_CAPTURE(differential, lambertian, demo::Finish::Lambertian)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(differential, conductors, demo::Finish::Conductors)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
+BENCHMARK_CAPTURE(differential, lambertian, demo::Finish::Lambertian)->Apply(inMilliseconds);
+BENCHMARK_CAPTURE(differential, conductors, demo::Finish::Conductors)->Apply(inMilliseconds);
 
 }  // namespace
 }  // namespace chromeball

@@ -12,7 +12,7 @@
 #include "composite/local_scene.h"
 #include "composite/reflectance.h"
 #include "composite/render_composite.h"
-#include "demo/terrace.h"
+#include "demo/gallery.h"
 #include "scene/gltf/load_gltf.h"
 
 namespace chromeball {

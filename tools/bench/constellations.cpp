@@ -3,14 +3,11 @@
 // them. CHROMEBALL_PROBE may name another map.
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
-
 #include "lighting/constellation/cube_grid.h"
 #include "lighting/constellation/kollig_keller.h"
 #include "lighting/constellation/median_cut.h"
 #include "lighting/constellation/penrose.h"
-#include "probe/load.h"
-#include "probe/synth.h"
+#include "scene.h"
 
 namespace chromeball {
 namespace {
@@ -18,8 +15,7 @@ namespace {
 constexpr int kLights = 300;
 
 const Image& map() {
-  static const char* path = std::getenv("CHROMEBALL_PROBE");
-  static const Image image = path ? loadProbe(path).latLong : studioProbe({1024, 512});
+  static const Image image = benchmarkProbe();
   return image;
 }
 

@@ -198,7 +198,7 @@ void unusedFeatures(benchmark::State& state) {
     state.SkipWithError("the two images differ");
   state.counters["cost of unused features"] = fullSeconds / leanSeconds - 1;
 }
-BENCHMARK(unusedFeatures)->Unit(benchmark::kMillisecond)->UseRealTime()->MinTime(4);
+BENCHMARK(unusedFeatures)->Apply(inMilliseconds)->MinTime(4);
 
 }  // namespace
 }  // namespace chromeball

@@ -3,23 +3,17 @@
 // file in CHROMEBALL_PROBE, or a studio.
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
-
 #include "lighting/fit/irradiance_fit.h"
 #include "lighting/fit/radiance_points.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
-#include "probe/load.h"
-#include "probe/synth.h"
+#include "scene.h"
 
 namespace chromeball {
 namespace {
 
 const Image& fitProbe() {
-  static const Image probe = [] {
-    const char* path = std::getenv("CHROMEBALL_PROBE");
-    return path ? loadProbe(path).latLong : studioProbe({512, 256});
-  }();
+  static const Image probe = benchmarkProbe({512, 256});
   return probe;
 }
 

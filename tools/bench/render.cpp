@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The overhead of a render over ray tracing: samples and rays per second, and the time of the same
 // rays replayed by Embree alone. CHROMEBALL_PROBE replaces the default probe, a studio.
-#include <benchmark/benchmark.h>
-
 #include "render/render.h"
 #include "scene.h"
 
@@ -58,19 +56,11 @@ void overhead(benchmark::State& state, demo::Finish finish) {
   state.counters["ns/sample in Embree"] = 1e9 * alone / samples;
 }
 
-BENCHMARK_CAPTURE(render, lambertian, demo::Finish::Lambertian)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(render, conductors, demo::Finish::Conductors)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(overhead, lambertian, demo::Finish::Lambertian)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(overhead, conductors, demo::Finish::Conductors)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(overhead, fine, demo::Finish::Fine)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(render, lambertian, demo::Finish::Lambertian)->Apply(inMilliseconds);
+BENCHMARK_CAPTURE(render, conductors, demo::Finish::Conductors)->Apply(inMilliseconds);
+BENCHMARK_CAPTURE(overhead, lambertian, demo::Finish::Lambertian)->Apply(inMilliseconds);
+BENCHMARK_CAPTURE(overhead, conductors, demo::Finish::Conductors)->Apply(inMilliseconds);
+BENCHMARK_CAPTURE(overhead, fine, demo::Finish::Fine)->Apply(inMilliseconds);
 
 }  // namespace
 }  // namespace chromeball

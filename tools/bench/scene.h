@@ -3,13 +3,15 @@
 // replaces the default probe, a studio.
 #pragma once
 
+#include <benchmark/benchmark.h>
+
 #include <array>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <memory>
 
-#include "demo/still_life.h"
+#include "demo/gallery.h"
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "scene/gltf/load_gltf.h"
@@ -19,9 +21,9 @@ namespace chromeball {
 
 inline constexpr int kWidth = 320, kHeight = 240, kSamples = 64, kDepth = 5;
 
-inline Image benchmarkProbe() {
-  if (const char* path = std::getenv("CHROMEBALL_PROBE")) return loadProbe(path).latLong;
-  return studioProbe({1024, 512});
+inline Image benchmarkProbe(const ImageSize& size = {1024, 512}) {
+  const char* path = std::getenv("CHROMEBALL_PROBE");
+  return path ? loadProbe(path).latLong : studioProbe(size);
 }
 
 struct BenchmarkScene {
@@ -120,10 +122,15 @@ inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
       log);
 }
 
-// CPU time of this thread.
-inline double cpuSeconds() {
+// How the benchmarks are reported.
+inline void inMilliseconds(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+
+// CPU time, of this thread unless the clock is another.
+inline double cpuSeconds(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
   timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  clock_gettime(clock, &t);
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 

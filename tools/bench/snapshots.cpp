@@ -14,23 +14,18 @@ namespace {
 
 using namespace std::chrono_literals;
 
-double cpuOfProcess() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
 // The part of the samples that is taken in a second of processor time, after the first ones.
 double rate(Session& session, const RenderDescription& description, bool watches) {
   session.start();
   while (!session.snapshot()) std::this_thread::sleep_for(10ms);
-  const double before = session.fraction(), start = cpuOfProcess();
+  const double before = session.fraction(), start = cpuSeconds(CLOCK_PROCESS_CPUTIME_ID);
   const auto end = std::chrono::steady_clock::now() + 1000ms;
   while (std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(50ms);
     if (watches) benchmark::DoNotOptimize(session.snapshot());
   }
-  const double rate = (session.fraction() - before) / (cpuOfProcess() - start);
+  const double rate =
+      (session.fraction() - before) / (cpuSeconds(CLOCK_PROCESS_CPUTIME_ID) - start);
   session.update(description);
   return rate;
 }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assemble_options.h"
-#include "input_image.h"
 
 #include "base/error.h"
 #include "base/file.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
+#include "image_files.h"
 #include "messages.h"
+#include "probe/capture/find_circle.h"
 #include "probe/capture/photograph.h"
 #include "probe/convert.h"
 #include "probe/load.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {
@@ -22,16 +22,16 @@ void addBallOptions(Command command, AssembleArguments& arguments) {
   command.addOption("--reflectivity", arguments.reflectivity,
                     "X or R,G,B of the ball, as `probe reflectivity` measures it; else 1");
   command
-      .addOption("--ball-ior", arguments.ballIor,
-                 "N,K: the reflectivity changes with the angle as that of a metal of refractive "
-                 "index N + iK: chrome 3.18,3.31. Without --reflectivity, also its value at the "
-                 "centre")
+      .addOption(
+          "--ball-ior", arguments.ballIor,
+          "N,K: the reflectivity changes with the angle as that of a metal of refractive index N + "
+          "iK: chrome 3.18,3.31. Without --reflectivity, also its value at the centre")
       .excludes(command.addFlag("--schlick", arguments.schlick,
                                 "the reflectivity rises to 1 at the rim, by Schlick's "
                                 "approximation: a rendered ball of glTF"));
-  command.addOption("--camera-disc", arguments.cameraDisc,
-                    "degrees around the camera's reflection that other photographs replace; else "
-                    "15");
+  command.addOption(
+      "--camera-disc", arguments.cameraDisc,
+      "degrees around the camera's reflection that other photographs replace; else 15");
 }
 
 // "X", for all channels, or "R,G,B".
@@ -77,18 +77,105 @@ bool isColor(const std::string& text) {
          text.find_first_not_of("0123456789.,eE+-") == std::string::npos;
 }
 
+std::vector<std::string> split(const std::vector<std::string>& texts, char separator) {
+  std::vector<std::string> parts;
+  for (const std::string& text : texts)
+    for (size_t begin = 0; begin <= text.size();) {
+      const size_t end = std::min(text.find(separator, begin), text.size());
+      parts.push_back(text.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  return parts;
+}
+
+void checkCount(const std::vector<std::string>& values, size_t photographs,
+                std::string_view option) {
+  if (values.size() != photographs)
+    throwInput("{}: {} given for {} photograph{}; give one for each, in order", option,
+               values.size(), photographs, photographs == 1 ? "" : "s");
+}
+
+// "AZIMUTH" or "AZIMUTH:ELEVATION".
+CameraPosition parseCamera(const std::string& text) {
+  constexpr double kLargest = 3600;
+  const size_t colon = std::min(text.find(':'), text.size());
+  CameraPosition camera{parseNumbers(text.substr(0, colon), 1, "--azimuth")[0], 0};
+  if (colon < text.size())
+    camera.elevation = parseNumbers(text.substr(colon + 1), 1, "--azimuth")[0];
+  if (std::fabs(camera.azimuth) > kLargest)
+    throwInput("--azimuth: {} should be {} to {} degrees", camera.azimuth, -kLargest, kLargest);
+  if (std::fabs(camera.elevation) > 90)
+    throwInput("--azimuth: the elevation {} should be -90 to 90 degrees", camera.elevation);
+  return camera;
+}
+
+std::vector<CameraPosition> parseCameras(const AssembleArguments& arguments) {
+  const std::vector<std::string> texts = split(arguments.azimuths, ',');
+  if (texts.empty() && arguments.photographs.size() == 1) return {CameraPosition{}};
+  if (texts.empty())
+    throwInput("--azimuth: {} photographs need the azimuths of their cameras, such as 0,90",
+               arguments.photographs.size());
+  checkCount(texts, arguments.photographs.size(), "--azimuth");
+  std::vector<CameraPosition> cameras;
+  for (const std::string& text : texts) cameras.push_back(parseCamera(text));
+  return cameras;
+}
+
+// Balls may be cropped by the picture (HDRI book, figure 9.9).
+Circle parseCircle(const std::string& text, const Image& image, const std::string& file) {
+  constexpr double kLeastRadius = 4, kLargestRadius = 65536, kLeastInside = 0.75;
+  const std::vector<double> c = parseNumbers(text, 3, "--circle");
+  const Circle circle{{c[0], c[1]}, c[2]};
+  if (!(circle.radius >= kLeastRadius && circle.radius <= kLargestRadius))
+    throwInput("--circle: the radius {} should be {} to {} pixels", circle.radius, kLeastRadius,
+               kLargestRadius);
+  if (shareInside(circle, image.width, image.height) < kLeastInside)
+    throwInput("--circle: more than a quarter of {} is outside {}, which has {} x {} pixels", text,
+               file, image.width, image.height);
+  return circle;
+}
+
+// An image circle that fills the picture leaves no outline to find in it.
+std::optional<Circle> circleOfSquare(const Image& image) {
+  if (image.width != image.height) return std::nullopt;
+  return Circle{dvec2(0.5 * image.width), 0.5 * image.width};
+}
+
+// A circle within a fisheye's picture may also be the outline of a lamp.
+bool mayBeImageCircle(const Circle& circle, const Image& image) {
+  return circle.radius > 0.25 * std::min(image.width, image.height);
+}
+
+void setCircle(const std::string& given, bool isFisheye, AssemblyPhotograph& photograph) {
+  const Image& image = photograph.image;
+  if (given != "auto") {
+    photograph.circle = parseCircle(given, image, photograph.file);
+  } else {
+    std::optional<FoundCircle> found = findCircle(image);
+    if (isFisheye && found && !mayBeImageCircle(found->circle, image)) found.reset();
+    const std::optional<Circle> filling = isFisheye ? circleOfSquare(image) : std::nullopt;
+    if (!found && filling) {
+      photograph.circle = *filling;
+      return;
+    }
+    if (!found)
+      throwInput("{}: no {} found; give its circle in pixels: --circle X,Y,RADIUS", photograph.file,
+                 isFisheye ? "image circle" : "ball");
+    photograph.circle = found->circle;
+    photograph.found = found;
+  }
+}
+
 }  // namespace
 
 void addAssembleOptions(Command command, AssembleArguments& arguments) {
-  command.addOption("PHOTO", arguments.photographs, "linear images, up to 16").required();
-  command.addOption("-o,--output", arguments.out, "the image to write: .exr, .hdr, .pfm or .png")
-      .required();
+  command.addRequired("PHOTO", arguments.photographs, "linear images, up to 16");
+  command.addRequired("-o,--output", arguments.out, "the image to write: .exr, .hdr, .pfm or .png");
   command
-      .addOption(
-          "--azimuth", arguments.azimuths,
-          "AZIMUTH[:ELEVATION],...: where each camera is, in degrees, seen from the ball: 0 "
-          "is +Z, 90 is +X. A lens looks away from there: 0 towards -Z, 90 towards -X, 0:-90 "
-          "straight up. One photograph: 0 if left out")
+      .addOption("--azimuth", arguments.azimuths,
+                 "AZIMUTH[:ELEVATION],...: where each camera is, in degrees, seen from the ball: 0 "
+                 "is +Z, 90 is +X. A lens looks away from there: 0 towards -Z, 90 towards -X, "
+                 "0:-90 straight up. One photograph: 0 if left out")
       .onePerName();
   command
       .addOption("--circle", arguments.circles,
@@ -109,9 +196,9 @@ void addAssembleOptions(Command command, AssembleArguments& arguments) {
                   "do not match the exposures of the photographs");
   command.addFlag("--keep-azimuth", arguments.keepAzimuth,
                   "do not correct the azimuths by up to 5 degrees");
-  command.addOption("--fill", arguments.fill,
-                    "what blind directions get: inpaint (smooth), black, R,G,B or the file of a "
-                    "probe");
+  command.addOption(
+      "--fill", arguments.fill,
+      "what blind directions get: inpaint (smooth), black, R,G,B or the file of a probe");
   command.addOption("--to", arguments.to, "the mapping of the output, as of `probe convert`");
   command.addOption("--size", arguments.size, "WIDTHxHEIGHT; else the size that keeps the detail");
   command.addOption("--preview", arguments.preview,
@@ -132,7 +219,8 @@ void checkFiles(const AssembleArguments& arguments) {
   checkDistinct({arguments.out, arguments.preview}, inputs);
 }
 
-std::shared_ptr<const CaptureOptics> parseOptics(const AssembleArguments& arguments) {
+std::shared_ptr<const CaptureOptics> parseOptics(const AssembleArguments& arguments,
+                                                 const Command& command) {
   if (!arguments.isFisheye()) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const double distance = parseRange(arguments.distance, kInfinity, 1.1, 1e9, "--distance",
@@ -144,14 +232,8 @@ std::shared_ptr<const CaptureOptics> parseOptics(const AssembleArguments& argume
   if (!namesFisheye(arguments.from))
     throwInput("--from: `{}` should be mirror-ball or fisheye[:FOV[:PROJECTION]]", arguments.from);
   const Fisheye lens = parseFisheye(arguments.from, "--from");
-  const std::pair<const char*, bool> ofBalls[] = {
-      {"--distance", !arguments.distance.empty()},
-      {"--reflectivity", !arguments.reflectivity.empty()},
-      {"--ball-ior", !arguments.ballIor.empty()},
-      {"--schlick", arguments.schlick},
-      {"--camera-disc", !arguments.cameraDisc.empty()}};
-  for (const auto& [option, isGiven] : ofBalls)
-    if (isGiven) throwInput("{}: is for mirror balls, not for a fisheye lens", option);
+  command.refuse({"--distance", "--reflectivity", "--ball-ior", "--schlick", "--camera-disc"},
+                 "is for mirror balls, not for a fisheye lens");
   return std::make_shared<FisheyeOptics>(lens);
 }
 
@@ -183,6 +265,31 @@ AssemblyTarget parseTarget(const AssembleArguments& arguments,
       parseMapping(arguments.to, size.width, size.height, "--to");
   if (!mapping) return {parseMapping(arguments.to, "--to"), size, size};
   return {*mapping, size, *mapping == Mapping::LatLong ? size : natural};
+}
+
+std::vector<AssemblyPhotograph> loadPhotographs(const AssembleArguments& arguments) {
+  const size_t count = arguments.photographs.size();
+  const std::vector<CameraPosition> cameras = parseCameras(arguments);
+  std::vector<std::string> circles = split(arguments.circles, ';');
+  if (circles.empty()) circles.assign(count, "auto");
+  checkCount(circles, count, "--circle");
+  std::vector<std::string> masks = arguments.masks;
+  if (masks.size() == 1) masks.assign(count, std::string(masks.front()));
+  if (!masks.empty()) checkCount(masks, count, "--mask");
+
+  std::vector<AssemblyPhotograph> photographs(count);
+  for (size_t i = 0; i < count; ++i) {
+    AssemblyPhotograph& photograph = photographs[i];
+    photograph.file = arguments.photographs[i];
+    photograph.camera = cameras[i];
+    LoadedPhotograph loaded = loadPhotograph(photograph.file);
+    photograph.image = std::move(loaded.image);
+    if (!masks.empty())
+      photograph.mask = loadMask(masks[i], photograph.image, photograph.file, loaded.messages);
+    print(loaded.messages);
+    setCircle(circles[i], arguments.isFisheye(), photograph);
+  }
+  return photographs;
 }
 
 }  // namespace chromeball

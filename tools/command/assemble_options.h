@@ -38,7 +38,8 @@ struct AssemblyTarget {
 
 // These throw InputError.
 void checkFiles(const AssembleArguments& arguments);
-std::shared_ptr<const CaptureOptics> parseOptics(const AssembleArguments& arguments);
+std::shared_ptr<const CaptureOptics> parseOptics(const AssembleArguments& arguments,
+                                                 const Command& command);
 BlindFill parseFill(const std::string& text);
 std::vector<AssemblyPhotograph> loadPhotographs(const AssembleArguments& arguments);  // and warns
 AssemblyTarget parseTarget(const AssembleArguments& arguments,

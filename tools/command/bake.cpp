@@ -1,26 +1,83 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball bake SCENE -o MODEL_BAKED.glb: lightmaps and vertex colours for real-time viewers.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 
+#include "bake/atlas.h"
+#include "bake/bake.h"
 #include "bake/baked_file.h"
 #include "bake/lightmap.h"
 #include "bake/vertex_light.h"
-#include "bake_options.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "commands.h"
+#include "front/arguments.h"
 #include "front/plan_render.h"
-#include "heeded_settings.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "messages.h"
 #include "progress_bar.h"
+#include "scene_options.h"
 #include "session/memory_estimate.h"
 #include "session/render_loaded.h"
-#include "thread_limit.h"
 
 namespace chromeball {
 namespace {
+
+constexpr int kMinPage = 16, kMaxPadding = 256;
+
+template <size_t N>
+size_t indexOf(const std::string& name, const char* const (&names)[N], const char* option) {
+  const auto found = std::ranges::find(names, name);
+  if (found == std::end(names))
+    throwInput("{}: `{}` is not one of {}", option, name, fmt::join(names, ", "));
+  return size_t(found - std::begin(names));
+}
+
+void checkTexels(const char* option, const std::optional<int64_t>& number, int least, int most) {
+  if (number && (*number < least || *number > most))
+    throwInput("{}: should be a whole number from {} to {} (texels)", option, least, most);
+}
+
+struct BakeOptions : SceneOptions {
+  std::string what = "irradiance", to = "lightmap", output;
+  std::optional<int64_t> size, padding;  // texels
+  std::optional<double> texel;           // metres
+  std::optional<double> scale;           // the light that white stands for
+  bool denoises = false, keepsNoise = false, keepsMaterials = false;
+
+  bool toVertices() const { return to == "vertices"; }
+  // Throws InputError for an unknown name.
+  BakedLight light() const { return BakedLight(indexOf(what, kBakedLightNames, "--what")); }
+  std::filesystem::path lightmapPath() const {
+    return std::filesystem::path(output).replace_extension(".exr");
+  }
+};
+
+// Values out of range, options that exclude each other, and outputs that cannot be written.
+void check(const BakeOptions& a, const Command& command) {
+  constexpr const char* kTargets[] = {"lightmap", "vertices"};
+  const BakedLight what = a.light();
+  indexOf(a.to, kTargets, "--to");
+  checkTexels("--size", a.size, kMinPage, kMaxPage);
+  checkTexels("--padding", a.padding, 0, kMaxPadding);
+  if (a.size && a.texel) throwInput("--texel: excludes --size; give one");
+  if (a.texel && !(*a.texel > 0 && std::isfinite(*a.texel)))
+    throwInput("--texel: should be a length above 0 (metres)");
+  if (a.scale && !isPositiveFloat(*a.scale)) throwInput("--scale: should be {}", kPositiveFloats);
+  if (a.scale && (what == BakedLight::AmbientOcclusion || a.keepsMaterials))
+    throwInput("--scale: is of colours that the file shows without light; leave it out");
+  if (a.toVertices())
+    command.refuse({"--size", "--padding", "--texel", "--denoise", "--no-denoise"},
+                   "is for lightmaps; leave it out with --to vertices");
+  if (a.settings.has("render.ao_distance") && a.what != "ambient-occlusion")
+    throwInput("--ao-distance: is for --what ambient-occlusion");
+  if (a.settings.get<uint64_t>("render.samples") < 2) throwInput("--samples: should be 2 or more");
+  checkOutputFile(a.output, {".glb", ".gltf"});
+  if (!a.toVertices()) checkWritable(a.lightmapPath());
+}
 
 // Takes the distance of ambient occlusion out of the settings: it is the map's, not a layer's.
 std::optional<double> takeDistance(SceneFile& scene, Settings& settings) {
@@ -100,9 +157,8 @@ class Bake {
     describe(file, baked);
     file.extras["chromeball"]["lightmap"] = path.filename().string();
     file.extras["chromeball"]["texelsPerMetre"] = atlas.density;
-    print(
-        writeImage(path, OutputImage{{{"", "RGB", map.light}}, {{"baked", options_.what}}, {}, {}}),
-        false);
+    print(writeImage(path,
+                     OutputImage{{{"", "RGB", map.light}}, {{"baked", options_.what}}, {}, {}}));
     writeBaked(options_.output, loaded_.scene, lightmappedGeometry(meshes_, charts, atlas),
                pageOf(map, file), file);
     summary_ =
@@ -134,9 +190,8 @@ class Bake {
     BakeResult baked = bake(*prepared_.world, *prepared_.lighting, meshes_, points, settings_,
                             [&](double fraction) { bar.update(fraction); });
     if (baked.invalid.total() > 0)
-      warn(fmt::format("{} invalid samples were left out; the first is of {} {}, {}",
-                       baked.invalid.total(), options_.toVertices() ? "vertex" : "texel",
-                       baked.invalid.x, baked.invalid.y));
+      warn("{} invalid samples were left out; the first is of {} {}, {}", baked.invalid.total(),
+           options_.toVertices() ? "vertex" : "texel", baked.invalid.x, baked.invalid.y);
     return baked;
   }
 
@@ -175,22 +230,17 @@ class Bake {
   void checkPageMemory(int size) const {
     constexpr double kBytesPerTexel = 7 * sizeof(float) + 20 + sizeof(BakePoint) +
                                       sizeof(PointResult) + 2 * sizeof(Rgb) + sizeof(int);
-    const double needed = kBytesPerTexel * size * size + estimateMemory(loaded_).peak;
-    if (needed > memoryLimit(loaded_.description))
-      throw InputError(
-          fmt::format("{}: a page of {} x {} texels takes {:.3g} GB of memory with all "
-                      "else; the limit is {:.3g} GB",
-                      options_.texel ? "--texel" : "--size", size, size, 1e-9 * needed,
-                      1e-9 * memoryLimit(loaded_.description)),
-          Remedy{"memory", {}});
+    checkMemoryWithScene(loaded_, kBytesPerTexel * size * size,
+                         fmt::format("{}: a page of {} x {} texels takes",
+                                     options_.texel ? "--texel" : "--size", size, size));
   }
 
   void report() const {
     for (const Instance& instance : loaded_.scene.instances)
       if (const Material& m = loaded_.scene.materials[size_t(instance.material)];
           m.extended && bakedFile().look != BakedLook::Unlit) {
-        warn(fmt::format("{}: material `{}` has extensions that the baked model lacks",
-                         options_.output, m.name));
+        warn("{}: material `{}` has extensions that the baked model lacks", options_.output,
+             m.name);
         break;
       }
     if (!options_.quiet())
@@ -210,8 +260,8 @@ class Bake {
   std::string summary_;
 };
 
-void run(const BakeOptions& options) {
-  checkBakeOptions(options);
+void run(const BakeOptions& options, const Command& command) {
+  check(options, command);
   const ThreadLimit threads = threadLimit(options.settings);
   Bake(options).run();
 }
@@ -219,11 +269,28 @@ void run(const BakeOptions& options) {
 }  // namespace
 
 void addBakeCommand(Command app) {
-  const auto options = std::make_shared<BakeOptions>();
-  Command command =
-      app.addCommand("bake", "Bake light into a lightmap or vertex colours, for real-time viewers");
-  addBakeOptions(command, *options);
-  command.callback([options] { run(*options); });
+  auto [command, a] = app.addCommand<BakeOptions>(
+      "bake", "Bake light into a lightmap or vertex colours, for real-time viewers", run);
+  addSceneOptions(command, a, SceneCommand::Bake);
+  command.addRequired(
+      "-o,--output", a.output,
+      "the model to write: .glb or .gltf; a lightmap is also written as .exr beside it");
+  command.addWithDefault("--what", a.what,
+                         "irradiance, ambient-occlusion, or radiance along the normal");
+  command.addWithDefault("--to", a.to, "lightmap (TEXCOORD_1) or vertices (COLOR_0)");
+  command.addOption("--size", a.size,
+                    "of the lightmap, in texels along an edge, up to 16384; 1024 by default");
+  command.addOption("--texel", a.texel, "in place of --size: metres along the edge of a texel");
+  command.addOption("--padding", a.padding, "texels around each chart; 4 by default");
+  command.addOption("--scale", a.scale,
+                    "the light that the file's white stands for; by default a power of two that "
+                    "clips only what emits");
+  Option denoises =
+      command.addFlag("--denoise", a.denoises, "remove noise from lightmaps: the default");
+  command.addFlag("--no-denoise", a.keepsNoise, "do not").excludes(denoises);
+  command.addFlag("--keep-materials", a.keepsMaterials,
+                  "write the model's own materials; engines take the light from the .exr or from "
+                  "_IRRADIANCE of the vertices");
 }
 
 }  // namespace chromeball

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "basis_pixels.h"
+#include "basis.h"
 
 #include <algorithm>
 #include <optional>
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "basis_job.h"
 #include "film/rows.h"
 #include "image/io/output_file.h"
 #include "interrupt.h"
@@ -15,7 +14,6 @@
 #include "relight/stage/render_basis.h"
 #include "relight/stage/stage_file.h"
 #include "session/memory_estimate.h"
-#include "thread_limit.h"
 
 namespace chromeball {
 namespace {
@@ -63,7 +61,7 @@ struct Written {
 
 // Renders and writes bands of `rows` rows.
 Written writeStage(const BasisRenderer& renderer, const RenderSettings& s, int rows,
-                   const PixelBasis& own, const Metadata& metadata, const Progress& progress) {
+                   const BasisArguments& own, const Metadata& metadata, const Progress& progress) {
   std::optional<StageWriter> file;
   Written written;
   for (int top = 0; top < s.height; top += rows) {
@@ -83,40 +81,39 @@ Written writeStage(const BasisRenderer& renderer, const RenderSettings& s, int r
 
 }  // namespace
 
-void runBasisPixels(const SceneOptions& options, const PixelBasis& own) {
+void runBasisPixels(const BasisArguments& a) {
   const Stopwatch watch;
-  const DirectionBasis basis(own.directions, "--directions");
-  checkOutputFile(own.out, {".exr"});
-  const ThreadLimit threads = threadLimit(options.settings);
-  RenderDescription description = basisJob(options, SceneCommand::Basis);
+  const DirectionBasis basis(a.directions.empty() ? "lat-long:32x16" : a.directions,
+                             "--directions");
+  checkOutputFile(a.out, {".exr"});
+  const ThreadLimit threads = threadLimit(a.settings);
+  RenderDescription description = basisJob(a, SceneCommand::Basis);
   const LoadedScene loaded = loadBasisScene(description);
   description = loaded.description;
-  checkDistinct({own.out}, loaded.files);
+  checkDistinct({a.out}, loaded.files);
   const int rows = rowsOfBand(loaded, basis);
   const RenderSettings& s = description.settings;
   const World world(loaded.scene, {}, BsdfTables(loaded.scene.materials, false));
-  print(loaded.messages, options.quiet());  // after the last error that input can cause
+  print(loaded.messages, a.quiet());  // after the last error that input can cause
   const BasisRenderer renderer(world, loaded.camera, basis, s);
   catchInterrupts();
   const Written written = [&] {
-    ProgressBar bar(options.showsProgress());
-    return writeStage(renderer, s, rows, own, metadataOf(options, description),
+    ProgressBar bar(a.showsProgress());
+    return writeStage(renderer, s, rows, a, metadataOf(a, description),
                       [&](double done) { bar.update(done); });
   }();
   if (const InvalidSamples& invalid = written.invalid; invalid.total() > 0)
-    warn(fmt::format("{} invalid samples were left out; the first is in pixel {}, {}",
-                     invalid.total(), invalid.x, invalid.y));
+    warn("{} invalid samples were left out; the first is in pixel {}, {}", invalid.total(),
+         invalid.x, invalid.y);
   if (written.clipped > 0)
-    warn(
-        fmt::format("{}: {} numbers above 65504, the largest of 16 bits, were clipped; leave out "
-                    "--half",
-                    own.out, written.clipped));
-  if (!options.quiet())
+    warn("{}: {} numbers above 65504, the largest of 16 bits, were clipped; leave out --half",
+         a.out, written.clipped);
+  if (!a.quiet())
     fmt::print("{} x {} pixels, {} samples, {} elements ({}){}{} in {:.2f} s: {}\n", s.width,
                s.height, s.samples, basis.size(), basis.name(),
                written.hasOwnLight ? " and the scene's own light" : "",
                rows < s.height ? fmt::format(", in {} bands", ceilDivide(s.height, rows)) : "",
-               watch.seconds(), own.out);
+               watch.seconds(), a.out);
 }
 
 }  // namespace chromeball

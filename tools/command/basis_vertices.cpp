@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "basis_vertices.h"
+#include "basis.h"
 
 #include <algorithm>
 
 #include "bake/baked_file.h"
 #include "base/error.h"
 #include "base/progress.h"
-#include "basis_job.h"
 #include "image/io/output_file.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "relight/transfer/glossy_model.h"
 #include "session/memory_estimate.h"
-#include "thread_limit.h"
 
 namespace chromeball {
 namespace {
 
-void check(const SceneOptions& options, const BasisVerticesOptions& own) {
-  checkOutputFile(own.output, {".glb", ".gltf"});
+void check(const BasisArguments& options) {
+  checkOutputFile(options.out, {".glb", ".gltf"});
   for (const Setting& setting : settingTable())
     if (options.settings.has(setting.name()) && !isOptionOf(SceneCommand::BasisVertices, setting))
       throwInput("--{}: has no effect with --at vertices; leave it out", setting.option);
@@ -33,12 +31,11 @@ RenderDescription transferJob(const SceneOptions& options) {
 
 class BasisVertices {
  public:
-  BasisVertices(const SceneOptions& options, const BasisVerticesOptions& own)
+  explicit BasisVertices(const BasisArguments& options)
       : options_(options),
-        own_(own),
-        basis_(own.basis, "--basis"),
+        basis_(options.functions.empty() ? "sh:4" : options.functions, "--basis"),
         loaded_(loadBasisScene(transferJob(options))) {
-    checkDistinct({own.output}, loaded_.files);
+    checkDistinct({options.out}, loaded_.files);
   }
 
   void run() {
@@ -46,14 +43,14 @@ class BasisVertices {
     const std::vector<BakePoint> points = vertexPoints(meshes);
     if (points.empty())
       throwInput("{}: has no triangle with an area; there is no transfer", options_.scene);
-    own_.isGlossy ? checkGlossyMemory(points.size()) : checkMemory(points.size());
+    options_.isGlossy ? checkGlossyMemory(points.size()) : checkMemory(points.size());
     const World world(loaded_.scene, {}, BsdfTables(loaded_.scene.materials, false));
     print(loaded_.messages, options_.quiet());  // after the last error that input can cause
-    own_.isGlossy ? writeGlossy(world, meshes, points) : writeDiffuse(world, meshes, points);
+    options_.isGlossy ? writeGlossy(world, meshes, points) : writeDiffuse(world, meshes, points);
     if (!options_.quiet())
       fmt::print("transfer of {} vertices in {:.2f} s, {}, {} samples{}: {}\n", points.size(),
                  watch_.seconds(), basis_.name(), loaded_.description.settings.samples, summary_,
-                 own_.output);
+                 options_.out);
   }
 
  private:
@@ -63,7 +60,7 @@ class BasisVertices {
     const VertexTransfer transfer = estimateTransfer(
         world, meshes, points, basis_, settings(), [&](double fraction) { bar.update(fraction); });
     report(transfer.invalid);
-    writeBaked(own_.output, loaded_.scene, transferGeometry(meshes, points, transfer), {},
+    writeBaked(options_.out, loaded_.scene, transferGeometry(meshes, points, transfer), {},
                file(transfer.invalid));
   }
 
@@ -76,20 +73,21 @@ class BasisVertices {
     const Signals signals = signalsOf(transfer);
     if (signals.count() == 0)
       throwInput("{}: all vertices are inside of bodies; there is no transfer", options_.scene);
-    const ClusteredPca pca = clusteredPca(signals, int(own_.clusters), int(own_.vectors));
+    const int vectors = int(options_.vectors.value_or(8));
+    const ClusteredPca pca = clusteredPca(signals, int(options_.clusters.value_or(16)), vectors);
     GlossyFile glossy = glossyFile(meshes, points, transfer, pca);
     BakedFile out = file(transfer.matrices.invalid);
     out.extras["chromeball"]["compressionError"] = pca.error;
     out.tables = std::move(glossy.tables);
-    writeBaked(own_.output, loaded_.scene, glossy.geometry, {}, out);
+    writeBaked(options_.out, loaded_.scene, glossy.geometry, {}, out);
     summary_ = fmt::format(", {} clusters of {} vectors, error {:.3g}%", pca.clusters.size(),
-                           own_.vectors, 100 * pca.error);
+                           vectors, 100 * pca.error);
   }
 
   static void report(const InvalidSamples& invalid) {
     if (invalid.total() > 0)
-      warn(fmt::format("{} invalid samples were left out; the first is of vertex {} {}",
-                       invalid.total(), invalid.x, invalid.y));
+      warn("{} invalid samples were left out; the first is of vertex {} {}", invalid.total(),
+           invalid.x, invalid.y);
   }
 
   TransferSettings settings() const {
@@ -100,13 +98,9 @@ class BasisVertices {
   // Counts the values, their columns, the file's buffer and the file's bytes.
   void checkMemory(size_t points) const {
     const double values = double(points) * double(basis_.size() + 1) * sizeof(Rgb);
-    const double needed = 4 * values + estimateMemory(loaded_).peak;
-    if (needed > memoryLimit(loaded_.description))
-      throw InputError(fmt::format("--basis {}: {} vertices with {} values take {:.3g} GB of "
-                                   "memory with all else; the limit is {:.3g} GB",
-                                   basis_.name(), points, basis_.size(), 1e-9 * needed,
-                                   1e-9 * memoryLimit(loaded_.description)),
-                       Remedy{"memory", {}});
+    checkMemoryWithScene(loaded_, 4 * values,
+                         fmt::format("--basis {}: {} vertices with {} values take", basis_.name(),
+                                     points, basis_.size()));
     constexpr double kMostInFile = 4e9;
     if (values > kMostInFile)
       throwInput("--basis {}: {} vertices with {} values are more than a .glb can hold, 4 GiB",
@@ -118,14 +112,10 @@ class BasisVertices {
   void checkGlossyMemory(size_t points) const {
     const double count = ViewGrid::kCount * double(basis_.size() + 1);
     const double product = std::min(double(points), 3 * count);
-    const double needed = 5 * double(points) * count * sizeof(Rgb) +
-                          3 * sizeof(double) * product * product + estimateMemory(loaded_).peak;
-    if (needed > memoryLimit(loaded_.description))
-      throw InputError(fmt::format("--glossy: {} vertices with matrices of {} x {} take {:.3g} GB "
-                                   "of memory with all else; the limit is {:.3g} GB",
-                                   points, ViewGrid::kCount, basis_.size() + 1, 1e-9 * needed,
-                                   1e-9 * memoryLimit(loaded_.description)),
-                       Remedy{"memory", {}});
+    checkMemoryWithScene(
+        loaded_, 5 * double(points) * count * sizeof(Rgb) + 3 * sizeof(double) * product * product,
+        fmt::format("--glossy: {} vertices with matrices of {} x {} take", points, ViewGrid::kCount,
+                    basis_.size() + 1));
   }
 
   BakedFile file(const InvalidSamples& invalid) const {
@@ -144,8 +134,7 @@ class BasisVertices {
     return file;
   }
 
-  const SceneOptions& options_;
-  const BasisVerticesOptions& own_;
+  const BasisArguments& options_;
   Stopwatch watch_;
   LightBasis basis_;
   LoadedScene loaded_;
@@ -154,10 +143,10 @@ class BasisVertices {
 
 }  // namespace
 
-void runBasisVertices(const SceneOptions& options, const BasisVerticesOptions& own) {
-  check(options, own);
-  const ThreadLimit threads = threadLimit(options.settings);
-  BasisVertices(options, own).run();
+void runBasisVertices(const BasisArguments& a) {
+  check(a);
+  const ThreadLimit threads = threadLimit(a.settings);
+  BasisVertices(a).run();
 }
 
 }  // namespace chromeball

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball camera solve MODEL PLATE --points P.csv | --lines L.csv | --fspy F.json -o camera.toml
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
-#include "camera_commands.h"
-#include "camera_report.h"
+#include "commands.h"
 #include "composite/plate.h"
 #include "front/arguments.h"
 #include "front/scene_file.h"
@@ -13,6 +16,7 @@
 #include "image/io/exif.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
+#include "json_values.h"
 #include "messages.h"
 #include "scene/camera.h"
 #include "scene/gltf/load_gltf.h"
@@ -30,20 +34,14 @@ struct CameraSolveArguments {
   bool distortion = false, json = false;
 };
 
-void check(const CameraSolveArguments& a) {
-  const auto isGiven = [](const std::string& name) { return !name.empty(); };
-  if (isGiven(a.points) + isGiven(a.lines) + isGiven(a.fspy) != 1)
+void check(const CameraSolveArguments& a, const Command& command) {
+  if (a.points.empty() + a.lines.empty() + a.fspy.empty() != 2)
     throwInput("give one of --points, --lines and --fspy");
-  const auto onlyFor = [](bool given, bool applies, const char* option, const char* method) {
-    if (given && !applies) throwInput("{}: is for {}", option, method);
-  };
-  onlyFor(a.distortion, isGiven(a.points), "--distortion", "--points");
-  onlyFor(a.height.has_value(), isGiven(a.lines), "--height", "--lines");
-  onlyFor(isGiven(a.origin), isGiven(a.lines), "--origin", "--lines");
-  onlyFor(a.up != "y", isGiven(a.fspy), "--up", "--fspy");
-  onlyFor(a.fov.has_value(), !isGiven(a.fspy), "--fov", "--points and --lines");
-  onlyFor(a.focal35.has_value(), !isGiven(a.fspy), "--focal35", "--points and --lines");
-  onlyFor(isGiven(a.principalPoint), !isGiven(a.fspy), "--principal-point", "--points and --lines");
+  if (a.points.empty()) command.refuse({"--distortion"}, "is for --points");
+  if (a.lines.empty()) command.refuse({"--height", "--origin"}, "is for --lines");
+  if (a.fspy.empty() && a.up != "y") throwInput("--up: is for --fspy");
+  if (!a.fspy.empty())
+    command.refuse({"--fov", "--focal35", "--principal-point"}, "is for --points and --lines");
   if (a.fov && a.focal35) throwInput("--fov: excludes --focal35; give one");
   if (a.fov && !(*a.fov >= 0.01 && *a.fov < 179))
     throwInput("--fov: {:g} should be 0.01 to 179 degrees", *a.fov);
@@ -54,7 +52,7 @@ void check(const CameraSolveArguments& a) {
                kLargestCoordinate);
   if (a.up != "y" && a.up != "z") throwInput("--up: `{}` should be y or z", a.up);
   checkOutputFile(a.output, {".toml"});
-  if (isGiven(a.preview)) checkWritable(a.preview);
+  if (!a.preview.empty()) checkWritable(a.preview);
   checkDistinct({a.output, a.preview}, {a.model, a.plate, a.points, a.lines, a.fspy});
 }
 
@@ -94,18 +92,16 @@ void addExif(const std::string& plate, size_t points, CameraKnowledge& known) {
   if (known.focalLength || points >= fewestPoints(known)) return;
   const auto focal35 = readExif(plate).focalLength35;
   if (!focal35) return;
-  note(fmt::format("{}: its EXIF tells a focal length of {:g} mm on 35 mm film", plate, *focal35));
+  note("{}: its EXIF tells a focal length of {:g} mm on 35 mm film", plate, *focal35);
   known.focalLength = focalLengthOf35mm(known.size, *focal35);
 }
 
 struct Solution {
-  std::string method;
+  std::string method;  // "points", "lines" or "fspy"
   SolvedCamera camera;
-  std::optional<CameraFit> fit;
+  std::optional<CameraFit> fit;  // not of fspy
   std::vector<ObservedPoint> points;
-  std::vector<std::string> names;
-
-  CameraReport report() const { return {method, camera, fit ? &*fit : nullptr, names}; }
+  std::vector<std::string> names;  // of the points or lines
 };
 
 Solution solve(const CameraSolveArguments& a, const ImageSize& size) {
@@ -139,6 +135,74 @@ Solution solve(const CameraSolveArguments& a, const ImageSize& size) {
   return s;
 }
 
+std::string withError(const std::string& value, std::optional<double> error) {
+  if (!error) return value;
+  return std::isfinite(*error) ? fmt::format("{} +- {:.2g}", value, *error) : value + " +- unknown";
+}
+
+// "points      12, RMS 0.43 pixels, worst `lamp` 0.91 pixels", and so on.
+std::vector<std::string> reportLines(const Solution& report) {
+  const SolvedCamera& camera = report.camera;
+  static const CameraErrors none;  // a reference: GCC 12 warns wrongly of a copy's members
+  const CameraErrors& errors = report.fit ? report.fit->errors : none;
+  std::vector<std::string> lines;
+  if (const auto& fit = report.fit)
+    lines.push_back(fmt::format("{:<12}{}, RMS {:.3g} pixels, worst `{}` {:.3g} pixels",
+                                report.method, report.names.size(), fit->rms(),
+                                report.names[fit->worst()], fit->distances[fit->worst()]));
+  const dvec3& p = camera.position;
+  std::string position = fmt::format("{:.5g} {:.5g} {:.5g}", p.x, p.y, p.z);
+  if (const auto& e = errors.position)
+    position += fmt::format(" +- {:.2g} {:.2g} {:.2g}", e->x, e->y, e->z);
+  lines.push_back(fmt::format("{:<12}{} m", "position", position));
+  const dvec3 view = dvec3(0) - camera.axes[2];  // without a negative 0
+  lines.push_back(fmt::format("{:<12}{:.5f} {:.5f} {:.5f}", "looks along", view.x, view.y, view.z));
+  if (report.fit) {
+    const dvec3 e = glm::degrees(errors.rotation);
+    const auto text = [](double x) {
+      return std::isfinite(x) ? fmt::format("{:.2g}", x) : std::string("unknown");
+    };
+    lines.push_back(fmt::format("{:<12}+- {} {} {} degrees about the right, up and back axes",
+                                "rotation", text(e.x), text(e.y), text(e.z)));
+  }
+  const auto fovError = errors.fov ? std::optional(glm::degrees(*errors.fov)) : std::nullopt;
+  lines.push_back(
+      fmt::format("{:<12}{} degrees vertically, {:.4g} mm on 35 mm film{}", "fov",
+                  withError(fmt::format("{:.5g}", glm::degrees(camera.fov())), fovError),
+                  equivalentOn35mm(camera.size, camera.focalLength),
+                  report.fit && !fovError ? " (given)" : ""));
+  if (camera.distortion)
+    lines.push_back(fmt::format("{:<12}{}", "k1",
+                                withError(fmt::format("{:.5g}", camera.distortion.k1), errors.k1)));
+  return lines;
+}
+
+JsonValue toJson(const Solution& report) {
+  const SolvedCamera& camera = report.camera;
+  JsonValue json = {{"method", report.method},
+                    {"size", {camera.size.width, camera.size.height}},
+                    {"position", vectorToJson(camera.position)},
+                    {"look_at", vectorToJson(lookAt(camera))},
+                    {"up", vectorToJson(camera.axes[1])},
+                    {"fov", glm::degrees(camera.fov())},
+                    {"focal_length_35mm", equivalentOn35mm(camera.size, camera.focalLength)},
+                    {"principal_point", {camera.principalPoint.x, camera.principalPoint.y}},
+                    {"distortion", {camera.distortion.k1, camera.distortion.k2}}};
+  const auto& fit = report.fit;
+  if (!fit) return json;
+  JsonValue errors = {{"rotation", vectorToJson(glm::degrees(fit->errors.rotation))}};
+  if (const auto& e = fit->errors.position) errors["position"] = vectorToJson(*e);
+  if (const auto& e = fit->errors.fov) errors["fov"] = glm::degrees(*e);
+  if (const auto& e = fit->errors.k1) errors["k1"] = *e;
+  json["errors"] = errors;
+  json["rms"] = fit->rms();
+  json["worst"] = report.names[fit->worst()];
+  if (fit->rivalRms) json["rival_rms"] = *fit->rivalRms;
+  for (size_t i = 0; i < report.names.size(); ++i)
+    json["distances"].push_back({{"name", report.names[i]}, {"pixels", fit->distances[i]}});
+  return json;
+}
+
 // The picked points are crosses, where the camera sees them are circles.
 void writePreview(const std::string& path, const Scene& scene, const Solution& solution,
                   Image picture) {
@@ -152,16 +216,16 @@ void writePreview(const std::string& path, const Scene& scene, const Solution& s
     marks.cross(point.pixel, kPicked);
     if (const auto seen = view.at(point.position)) marks.circle(size * seen->position, kSeen);
   }
-  print(writeImage(path, picture), false);
+  print(writeImage(path, picture));
 }
 
-void run(const CameraSolveArguments& a) {
-  check(a);
+void run(const CameraSolveArguments& a, const Command& command) {
+  check(a, command);
   Messages messages;
   Image plate = readPlate(a.plate, &messages);
   const Scene scene = loadModels(a.model, messages);
   const Solution solution = solve(a, {plate.width, plate.height});
-  const std::vector<std::string> lines = reportLines(solution.report());
+  const std::vector<std::string> lines = reportLines(solution);
   std::vector<std::string> comments{
       fmt::format("The camera of {}, by `chromeball camera solve`.", a.plate)};
   comments.insert(comments.end(), lines.begin(), lines.end());
@@ -173,58 +237,56 @@ void run(const CameraSolveArguments& a) {
   add(doubtsAbout(solution.points, solution.camera.size));
   if (solution.fit) add(doubtsAbout(*solution.fit));
   add(doubtsAbout(solution.camera, bounds(scene)));
-  print(messages, false);
+  print(messages);
   if (a.json)
-    fmt::print("{}\n", reportJson(solution.report()));
+    printJson(toJson(solution));
   else
     for (const std::string& line : lines) fmt::print("{}\n", line);
 }
 
 }  // namespace
 
-void addCameraSolveCommand(Command camera) {
-  const auto a = std::make_shared<CameraSolveArguments>();
-  Command command = camera.addCommand(
+void addCameraCommand(Command app) {
+  Command camera = app.addCommand("camera", "Find the cameras of photographs.");
+  camera.requiresCommand();
+  auto [command, a] = camera.addCommand<CameraSolveArguments>(
       "solve",
       "Find where a photograph was taken from, and its field of view: by points of known "
-      "positions, or by lines along the scene's axes.");
-  command.addOption("MODEL", a->model, "the model, .glb or .gltf, or a scene file").required();
-  command.addOption("PLATE", a->plate, "the photograph").required();
-  command.addOption("--points", a->points,
+      "positions, or by lines along the scene's axes.",
+      run);
+  command.addRequired("MODEL", a.model, "the model, .glb or .gltf, or a scene file");
+  command.addRequired("PLATE", a.plate, "the photograph");
+  command.addOption("--points", a.points,
                     "CSV name,x,y,z,px,py: at least 6 points, or 4 if the field of view is known");
-  command.addOption("--lines", a->lines,
+  command.addOption("--lines", a.lines,
                     "CSV axis,x1,y1,x2,y2[,metres]: at least 2 lines along each of 2 axes");
-  command.addOption("--fspy", a->fspy, "camera parameters that fSpy exported as JSON");
-  command
-      .addOption("-o,--output", a->output,
-                 "the .toml to write; `[camera] file` and --camera-file "
-                 "read it")
-      .required();
-  command.addOption("--fov", a->fov, "the vertical field of view in degrees, if it is known");
-  command.addOption("--focal35", a->focal35,
+  command.addOption("--fspy", a.fspy, "camera parameters that fSpy exported as JSON");
+  command.addRequired("-o,--output", a.output,
+                      "the .toml to write; `[camera] file` and --camera-file read it");
+  command.addOption("--fov", a.fov, "the vertical field of view in degrees, if it is known");
+  command.addOption("--focal35", a.focal35,
                     "the focal length in mm that has the same diagonal field of view on 35 mm "
                     "film, if it is known");
-  command.addFlag("--distortion", a->distortion, "find the lens's radial distortion k1 too");
-  command.addOption("--principal-point", a->principalPoint,
-                    "U,V: where the lens's axis meets the image, as fractions of its size from "
-                    "the top left [0.5,0.5]");
-  command.addOption("--height", a->height,
+  command.addFlag("--distortion", a.distortion, "find the lens's radial distortion k1 too");
+  command.addOption("--principal-point", a.principalPoint,
+                    "U,V: where the lens's axis meets the image, as fractions of its size from the "
+                    "top left [0.5,0.5]");
+  command.addOption("--height", a.height,
                     "height of the camera above the ground y = 0 in metres, for lines");
-  command.addOption("--origin", a->origin,
+  command.addOption("--origin", a.origin,
                     "PX,PY: the pixel that shows the point 0, 0, 0 of the ground, for lines");
-  command.addOption("--up", a->up, "the axis of fSpy's scene that is up: y, or z as in Blender")
-      .showsDefault();
-  command.addOption("--preview", a->preview,
+  command.addWithDefault("--up", a.up,
+                         "the axis of fSpy's scene that is up: y, or z as in Blender");
+  command.addOption("--preview", a.preview,
                     "an image to write: the model's edges over the photograph, picked points as "
                     "crosses, where the camera sees them as circles");
-  command.addFlag("--json", a->json, "print JSON");
+  command.addFlag("--json", a.json, "print JSON");
   command.footer(
       "Positions px, py are in pixels from the photograph's top left corner. The ends of a line "
       "go\n"
       "from one to another farther along the positive axis. `metres` is the length of a line "
       "whose\n"
       "first end is on the ground: the scale; that end is the origin, unless --origin is given.\n");
-  command.callback([a] { run(*a); });
 }
 
 }  // namespace chromeball

@@ -9,6 +9,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "base/error.h"
 #include "base/text.h"
 
 namespace chromeball {
@@ -43,17 +44,11 @@ bool takeWords(const CLI::results_t& words, std::vector<Number>& numbers) {
 }
 
 template <class T>
-struct ElementOf {
-  using Type = T;
-};
+constexpr bool kIsOfNumbers = std::is_arithmetic_v<T>;
 template <class T>
-struct ElementOf<std::optional<T>> {
-  using Type = T;
-};
+constexpr bool kIsOfNumbers<std::optional<T>> = std::is_arithmetic_v<T>;
 template <class T>
-struct ElementOf<std::vector<T>> {
-  using Type = T;
-};
+constexpr bool kIsOfNumbers<std::vector<T>> = std::is_arithmetic_v<T>;
 
 // As CLI::App::add_option(), but for the conversion.
 template <class T>
@@ -97,7 +92,7 @@ Command Command::addCommand(const std::string& name, const std::string& help) {
 
 template <class T>
 Option Command::addOption(const std::string& names, T& value, const std::string& help) {
-  if constexpr (std::is_arithmetic_v<typename ElementOf<T>::Type>)
+  if constexpr (kIsOfNumbers<T>)
     return Option(addNumberOption(*app_, names, value, help));
   else
     return Option(app_->add_option(names, value, help));
@@ -154,5 +149,9 @@ Command Command::widerNames() {
   return *this;
 }
 bool Command::has(const std::string& option) const { return app_->count(option) > 0; }
+void Command::refuse(std::initializer_list<const char*> options, const std::string& why) const {
+  for (const char* option : options)
+    if (has(option)) throwInput("{}: {}", option, why);
+}
 
 }  // namespace chromeball

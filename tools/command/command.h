@@ -4,7 +4,10 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI {
@@ -39,11 +42,33 @@ class Command {
   explicit Command(CLI::App& app) : app_(&app) {}
 
   Command addCommand(const std::string& name, const std::string& help);
+  // The same for one that runs with arguments, which its options set; they live as long as it does.
+  template <class Arguments>
+  std::pair<Command, Arguments&> addCommand(const std::string& name, const std::string& help,
+                                            void (*run)(const Arguments&)) {
+    const auto arguments = std::make_shared<Arguments>();
+    return {addCommand(name, help).callback([=] { run(*arguments); }), *arguments};
+  }
+  template <class Arguments>
+  std::pair<Command, Arguments&> addCommand(const std::string& name, const std::string& help,
+                                            void (*run)(const Arguments&, const Command&)) {
+    const auto arguments = std::make_shared<Arguments>();
+    Command command = addCommand(name, help);
+    return {command.callback([=] { run(*arguments, command); }), *arguments};
+  }
 
   // An option, or an argument if the name has no dash. `value`, of a type that command.cpp lists,
   // is set when the command line is parsed; it must live until then.
   template <class T>
   Option addOption(const std::string& names, T& value, const std::string& help);
+  template <class T>
+  Option addRequired(const std::string& names, T& value, const std::string& help) {
+    return addOption(names, value, help).required();
+  }
+  template <class T>
+  Option addWithDefault(const std::string& names, T& value, const std::string& help) {
+    return addOption(names, value, help).showsDefault();
+  }
   Option addFlag(const std::string& names, bool& value, const std::string& help);
   // `set` gets the words that follow the name; it may throw.
   using Words = std::vector<std::string>;
@@ -63,6 +88,8 @@ class Command {
   Command widerNames();  // in the help
 
   bool has(const std::string& option) const;  // was it given?
+  // Throws InputError, "OPTION: WHY", for the first of these that was given.
+  void refuse(std::initializer_list<const char*> options, const std::string& why) const;
 
  private:
   CLI::App* app_;

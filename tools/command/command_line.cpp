@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <initializer_list>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -118,23 +119,30 @@ void finishOutput() {
     throwRun("standard output: {}", std::strerror(errno));
 }
 
+void addCommands(Command app, std::initializer_list<void (*)(Command)> adders) {
+  for (const auto add : adders) add(app);
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Renders glTF scenes lit by HDR light probes.", "chromeball"};
   app.set_version_flag("--version", "chromeball " CHROMEBALL_VERSION);
   app.require_subcommand(1);
-  const Command command(app);
-  addRenderCommand(command);
-  addMergeCommand(command);
-  addCompareCommand(command);
-  addBakeCommand(command);
-  addBasisCommand(command);
-  addRelightCommand(command);
-  addProbeCommand(command);
-  addImageCommand(command);
-  addCameraCommand(command);
-  addLightsCommand(command);
-  addLightsErrorCommand(command);
-  addReferenceCommand(command);
+  Command command(app);
+  addCommands(command, {addRenderCommand, addMergeCommand, addCompareCommand, addBakeCommand,
+                        addBasisCommand, addRelightCommand});
+  addCommands(
+      command.addCommand("probe", "Inspect, convert and make light probes.").requiresCommand(),
+      {addProbeInfoCommand, addProbeConvertCommand, addProbeConvolveCommand,
+       addProbeAssembleCommand, addProbeReflectivityCommand, addProbeSynthCommand,
+       addProbeEditCommand, addProbeMergeCommand, addProbeSunCommand, addProbeSplitCommand,
+       addProbeAddSunCommand, addProbeAlignCommand, addProbeStitchCommand,
+       addProbeIrradianceCommand, addProbeRaysCommand, addProbePlotCommand});
+  addCommands(
+      command.addCommand("image", "View and compare images.").requiresCommand(),
+      {addImageDenoiseCommand, addImageDevelopCommand, addImageDivideCommand, addImageErrorCommand,
+       addImageFlatFieldCommand, addImageRelightCommand, addImageViewCommand});
+  addCommands(command,
+              {addCameraCommand, addLightsCommand, addLightsErrorCommand, addReferenceCommand});
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -9,7 +9,6 @@
 #include "base/json_text.h"
 #include "commands.h"
 #include "front/plan_render.h"
-#include "heeded_settings.h"
 #include "image/io/output_file.h"
 #include "interrupt.h"
 #include "lighting/methods.h"
@@ -24,7 +23,6 @@
 #include "study/result_tables.h"
 #include "study/study.h"
 #include "study/study_run.h"
-#include "thread_limit.h"
 
 namespace chromeball {
 namespace {
@@ -39,38 +37,28 @@ struct CompareArguments {
   int repeats = 4;
   std::string reference, referenceStrategy = "auto", baseline, folder;
   std::optional<int> referenceSamples;
-  bool choosesReference = false;  // referenceStrategy is given
 };
 
-// Combines each strategy with each integrator, except rows that name one.
+// Combines each strategy, or all, with each integrator, except rows that name one.
 std::vector<std::string> resolveRows(const std::vector<std::string>& strategies,
                                      const std::vector<std::string>& integrators) {
-  std::vector<std::string> names;
+  std::vector<std::string> given, names;
+  for (const std::string& name : strategies)
+    if (name != "all")
+      given.push_back(rowNamed(name, "--strategies").name());
+    else
+      for (const std::string_view known : strategyNames())
+        given.push_back(resolveStrategy(std::string(known)));
   const auto add = [&](const Row& row) {
     if (std::ranges::count(names, row.name()) == 0) names.push_back(row.name());
   };
-  for (const std::string& strategy : strategies) {
+  for (const std::string& strategy : given) {
     const Row row = rowNamed(strategy, "--strategies");
     if (integrators.empty() || row.integrator != IntegratorKind::Path)
       add(row);
     else
       for (const std::string& integrator : integrators)
         add(rowNamed(strategy + "+" + integrator, "--integrators"));
-  }
-  return names;
-}
-
-std::vector<std::string> resolveStrategies(const std::vector<std::string>& given) {
-  std::vector<std::string> names;
-  for (const std::string& name : given) {
-    std::vector<std::string> these;
-    if (name == "all")
-      for (const std::string_view known : strategyNames())
-        these.push_back(resolveStrategy(std::string(known)));
-    else
-      these.push_back(rowNamed(name, "--strategies").name());
-    for (const std::string& one : these)
-      if (std::find(names.begin(), names.end(), one) == names.end()) names.push_back(one);
   }
   return names;
 }
@@ -137,10 +125,10 @@ int planReferenceSamples(const CompareArguments& a, const std::vector<Budget>& b
   return a.referenceSamples.value_or(std::max(kMin, int(std::min(kFactor * maximum, 1e6))));
 }
 
-Study planStudy(const CompareArguments& a, Messages& notes) {
+Study planStudy(const CompareArguments& a, const Command& command, Messages& notes) {
   Study study;
   study.folder = a.folder;
-  study.strategies = resolveRows(resolveStrategies(a.strategies), a.integrators);
+  study.strategies = resolveRows(a.strategies, a.integrators);
   notes = mergeEqualRows(study.strategies);
   study.budgets = planBudgets(a);
   if (a.repeats < Study::kMinRepeats)
@@ -153,10 +141,8 @@ Study planStudy(const CompareArguments& a, Messages& notes) {
     throwInput("--baseline: `{}` is not among the compared strategies", a.baseline);
   study.referenceFile = a.reference;
   if (!a.reference.empty())
-    for (const auto& [given, option] :
-         {std::pair(a.referenceSamples.has_value(), "--reference-samples"),
-          std::pair(a.choosesReference, "--reference-strategy")})
-      if (given) throwInput("{}: the reference is a file; give one or the other", option);
+    command.refuse({"--reference-samples", "--reference-strategy"},
+                   "the reference is a file; give one or the other");
   study.referenceStrategy = rowNamed(a.referenceStrategy, "--reference-strategy").name();
   planReferenceSamples(a, study.budgets);  // throws for an invalid number
   if (a.folder.empty()) throwInput("--output: the name of the folder is empty");
@@ -183,32 +169,14 @@ void checkReference(const StudyRun& run, const Study& study) {
                study.referenceStrategy);
 }
 
-// The files of a report. Its renders are not among them, because they are read, not overwritten.
-struct ReportFiles {
-  explicit ReportFiles(const fs::path& folder)
-      : csv((folder / "results.csv").string()),
-        json((folder / "results.json").string()),
-        samples((folder / "samples.svg").string()),
-        seconds((folder / "seconds.svg").string()),
-        page((folder / "index.html").string()) {}
-  std::string csv, json, samples, seconds, page;
-};
-
-void checkOutputs(const ReportFiles& files, const CompareArguments& a, const LoadedScene& loaded) {
-  std::vector<std::string> inputs = loaded.files;
-  inputs.push_back(a.scene.scene);
-  inputs.push_back(a.reference);
-  checkDistinct({files.csv, files.json, files.samples, files.seconds, files.page}, inputs);
-}
-
-void compare(const CompareArguments& a) {
+void compare(const CompareArguments& a, const Command& command) {
   SceneFile scene = openScene(a.scene.scene);
   const bool hadComposite = scene.composite.has_value();
   scene.composite.reset();
   dropUnheeded(scene, SceneCommand::Compare);
   RenderDescription description = planRender(std::move(scene), a.scene.settings);
   Messages ofRows;
-  Study study = planStudy(a, ofRows);
+  Study study = planStudy(a, command, ofRows);
   // What is said of the suns' angle holds for the rows that have suns.
   const auto hasSuns = [](const std::string& row) { return row.starts_with("suns"); };
   if (description.origins.has("lighting.sun_angle") &&
@@ -217,8 +185,14 @@ void compare(const CompareArguments& a) {
   const ThreadLimit threads = threadLimit(a.scene.settings);
   const LoadedScene loaded = loadScene(description);
   description = loaded.description;
-  const ReportFiles files(a.folder);
-  checkOutputs(files, a, loaded);
+  // The renders in the folder are not among the outputs, because they are read, not overwritten.
+  const auto file = [&](const char* name) { return (fs::path(a.folder) / name).string(); };
+  const std::string csv = file("results.csv"), json = file("results.json"),
+                    samples = file("samples.svg"), seconds = file("seconds.svg"),
+                    page = file("index.html");
+  std::vector<std::string> inputs = loaded.files;
+  inputs.insert(inputs.end(), {a.scene.scene, a.reference});
+  checkDistinct({csv, json, samples, seconds, page}, inputs);
   description.settings.noiseLimit.reset();
   study.seed = description.settings.seed;
   study.identity = identityOf(loaded);
@@ -237,9 +211,8 @@ void compare(const CompareArguments& a) {
   print(loaded.messages, a.scene.quiet());
   if (hadComposite)
     warn(
-        fmt::format("{}: [composite] is ignored: strategies are compared on the whole model, "
-                    "without the plate",
-                    a.scene.scene));
+        "{}: [composite] is ignored: strategies are compared on the whole model, without the plate",
+        a.scene.scene);
 
   const auto results = [&] {
     const RenderSettings& s = description.settings;
@@ -253,11 +226,11 @@ void compare(const CompareArguments& a) {
     about.directions.emplace_back(name, sampledDirections(run.strategy(name)));
   const auto write = [&](const StudyResults& r) {
     const Machine machine = thisMachine();
-    writeText(files.csv, resultsCsv(r));
-    writeText(files.json, jsonText(resultsJson(study, r, machine), 2) + "\n");
-    writeText(files.samples, samplesPlot(r));
-    writeText(files.seconds, secondsPlot(r));
-    writeText(files.page, reportHtml(study, store, r, about, machine));
+    writeText(csv, resultsCsv(r));
+    writeText(json, jsonText(resultsJson(study, r, machine), 2) + "\n");
+    writeText(samples, samplesPlot(r));
+    writeText(seconds, secondsPlot(r));
+    writeText(page, reportHtml(study, store, r, about, machine));
   };
   catchInterrupts();
   const bool whole = [&] {
@@ -266,10 +239,9 @@ void compare(const CompareArguments& a) {
                    interrupted);
   }();
   if (!whole)
-    throw Interrupted(
-        fmt::format("interrupted; {} of {} renders are in {}, and the same command "
-                    "continues from there",
-                    run.stored(), run.total(), study.folder));
+    throw Interrupted(fmt::format(
+        "interrupted; {} of {} renders are in {}, and the same command continues from there",
+        run.stored(), run.total(), study.folder));
   const StudyResults all = results();
   write(all);
   for (const std::string& warning : all.warnings) warn(warning);
@@ -281,10 +253,8 @@ void compare(const CompareArguments& a) {
 }  // namespace
 
 void addCompareCommand(Command app) {
-  const auto arguments = std::make_shared<CompareArguments>();
-  CompareArguments& a = *arguments;
-  Command command =
-      app.addCommand("compare", "Compare lighting strategies on a scene: error, bias and time");
+  auto [command, a] = app.addCommand<CompareArguments>(
+      "compare", "Compare lighting strategies on a scene: error, bias and time", compare);
   addSceneOptions(command, a.scene, SceneCommand::Compare);
   command.footer(strategyHelp());
   command
@@ -304,25 +274,16 @@ void addCompareCommand(Command app) {
                  "Samples per pixel; 1,4,16,64 if neither these nor --times are given")
       .delimiter(',');
   command.addOption("--times", a.times, "Seconds per render: 1,2,4").delimiter(',');
-  command
-      .addOption("--repeats", a.repeats,
-                 "Independent renders of each strategy and budget, 3 or more")
-      .showsDefault();
+  command.addWithDefault("--repeats", a.repeats,
+                         "Independent renders of each strategy and budget, 3 or more");
   command.addOption("--reference", a.reference, "Reference image; else it is rendered");
   command.addOption("--reference-samples", a.referenceSamples,
                     "Samples per pixel of a reference that is rendered");
-  command
-      .addOption("--reference-strategy", a.referenceStrategy,
-                 "Strategy of a reference that is rendered")
-      .showsDefault();
+  command.addWithDefault("--reference-strategy", a.referenceStrategy,
+                         "Strategy of a reference that is rendered");
   command.addOption("--baseline", a.baseline, "Strategy whose efficiency is 1 (the first)");
-  command
-      .addOption("-o,--output", a.folder, "Folder of the report; a comparison in it is continued")
-      .required();
-  command.callback([arguments, command] {
-    arguments->choosesReference = command.has("--reference-strategy");
-    compare(*arguments);
-  });
+  command.addRequired("-o,--output", a.folder,
+                      "Folder of the report; a comparison in it is continued");
 }
 
 }  // namespace chromeball

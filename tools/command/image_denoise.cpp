@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "commands.h"
 #include "denoise/denoise.h"
 #include "image/io/output_file.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "session/denoised_image.h"
@@ -81,7 +81,7 @@ void run(const ImageDenoiseArguments& arguments) {
                            .albedo = reader.halved("albedo", 3, kMaxUnit),
                            .normal = reader.halved("normal", 3, kMaxUnit),
                            .disparity = reader.halved("disparity", 1)};
-  print(file.messages, false);  // not of a file that lacks layers: that is said instead
+  print(file.messages);  // not of a file that lacks layers: that is said instead
   checkMemory(arguments.input, color.mean);
   const std::atomic<bool> never = false;
   Denoised denoised = [&] {
@@ -97,7 +97,7 @@ void run(const ImageDenoiseArguments& arguments) {
   const double before = metadataNumber(output.metadata, "noise").value_or(NAN);
   const double noise = addDenoised(std::move(denoised), before, output);
   if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
-  print(writeInWindow(arguments.output, std::move(output), arguments.input), false);
+  print(writeInWindow(arguments.output, std::move(output), arguments.input));
   if (!arguments.quiet)
     fmt::print("noise {}: {}\n",
                std::isfinite(noise) ? fmt::format("about {:.2f}%", 100 * noise) : "unknown",
@@ -107,16 +107,12 @@ void run(const ImageDenoiseArguments& arguments) {
 }  // namespace
 
 void addImageDenoiseCommand(Command image) {
-  const auto arguments = std::make_shared<ImageDenoiseArguments>();
-  Command command = image.addCommand(
-      "denoise", "Remove noise from a render (biased), and estimate the error that remains.");
-  command.addOption("IN", arguments->input, "A render with --aov denoise, .exr").required();
-  command
-      .addOption("OUT", arguments->output,
-                 "The image to write; an .exr also has the layers noisy and denoise_error")
-      .required();
-  command.addFlag("--quiet", arguments->quiet, "Show neither progress nor the noise");
-  command.callback([arguments] { run(*arguments); });
+  auto [command, a] = image.addCommand<ImageDenoiseArguments>(
+      "denoise", "Remove noise from a render (biased), and estimate the error that remains.", run);
+  command.addRequired("IN", a.input, "A render with --aov denoise, .exr");
+  command.addRequired("OUT", a.output,
+                      "The image to write; an .exr also has the layers noisy and denoise_error");
+  command.addFlag("--quiet", a.quiet, "Show neither progress nor the noise");
 }
 
 }  // namespace chromeball

@@ -6,12 +6,12 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "front/develop_text.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "session/develop_image.h"
 
@@ -146,29 +146,28 @@ void run(const ImageDevelopArguments& arguments) {
   checkEffects(arguments, settings);
   Input input = readInput(arguments, settings);
   Image& color = input.image.layers.front().image;
-  print(inWords(develop(color, settings, &input.depth, input.frame)), false);
+  print(inWords(develop(color, settings, &input.depth, input.frame)));
   if (!input.otherLayers.empty() && lowerExtension(arguments.out) == ".exr")
-    note(fmt::format("{}: its colour alone is developed and written; without the layers {}",
-                     arguments.in, fmt::join(input.otherLayers, ", ")));
-  print(writeInWindow(arguments.out, std::move(input.image), arguments.in, transform), false);
+    note("{}: its colour alone is developed and written; without the layers {}", arguments.in,
+         fmt::join(input.otherLayers, ", "));
+  print(writeInWindow(arguments.out, std::move(input.image), arguments.in, transform));
 }
 
 }  // namespace
 
 void addImageDevelopCommand(Command image) {
-  const auto arguments = std::make_shared<ImageDevelopArguments>();
-  Command command = image.addCommand(
+  auto [command, a] = image.addCommand<ImageDevelopArguments>(
       "develop",
       "Show an HDR image through the optics of a camera: blur, streaks and vignetting before tone "
-      "mapping. In the order of the options.");
-  command.addOption("IN", arguments->in, "The image, linear").required();
-  command
-      .addOption("OUT", arguments->out,
-                 "The image to write: .png (tone mapped), or .exr, .hdr or .pfm (linear)")
-      .required();
-  const auto add = [&](const char* name, const char* type, const char* help) {
-    const auto found = std::ranges::find(arguments->optics, name, &OpticsOption::name);
-    command.addOption(std::string("--") + name, found->value, help).typeName(type);
+      "mapping. In the order of the options.",
+      run);
+  command.addRequired("IN", a.in, "The image, linear");
+  command.addRequired("OUT", a.out,
+                      "The image to write: .png (tone mapped), or .exr, .hdr or .pfm (linear)");
+  const auto add = [&options = command, &optics = a.optics](const char* name, const char* type,
+                                                            const char* help) {
+    const auto found = std::ranges::find(optics, name, &OpticsOption::name);
+    options.addOption(std::string("--") + name, found->value, help).typeName(type);
   };
   add("clip", "X",
       "Clip red, green and blue at X times white (after --exposure) first: what a blurred image of "
@@ -184,18 +183,15 @@ void addImageDevelopCommand(Command image) {
   add("vignette", "STRENGTH|FILE",
       "Multiply by 1 - STRENGTH (1 - cos^4 of the angle to the axis), or by an image that is "
       "stretched over the picture");
-  command.addOption("--fov", arguments->fov,
-                    "Vertical field of view in degrees, of the whole picture; without it that of "
-                    "the .exr");
-  command.addFlag("--exact", arguments->exact,
+  command.addOption(
+      "--fov", a.fov,
+      "Vertical field of view in degrees, of the whole picture; without it that of the .exr");
+  command.addFlag("--exact", a.exact,
                   "Use the exact kernels for all Gaussians: slow, the reference");
-  command.addOption("--exposure", arguments->exposure,
-                    "Stops: a .png shows radiance times 2^STOPS");
-  command
-      .addOption("--tonemap", arguments->tone,
-                 fmt::format("Tone operator of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
-      .showsDefault();
-  command.callback([arguments] { run(*arguments); });
+  command.addOption("--exposure", a.exposure, "Stops: a .png shows radiance times 2^STOPS");
+  command.addWithDefault(
+      "--tonemap", a.tone,
+      fmt::format("Tone operator of a .png: {}", fmt::join(toneOperatorNames(), ", ")));
 }
 
 }  // namespace chromeball

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "commands.h"
 #include "image/flat_field.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 
 namespace chromeball {
@@ -30,8 +30,8 @@ void run(const ImageDivideArguments& arguments) {
     throwInput("{}: is {} x {}, but {} is {} x {}; only images of the same size can be divided",
                arguments.a, a.width, a.height, arguments.b, b.width, b.height);
   if (const size_t undivided = divide(a, b); undivided > 0)
-    warn(fmt::format("{}: {} pixels have a channel that is not above 0; the result is 0 there",
-                     arguments.b, undivided));
+    warn("{}: {} pixels have a channel that is not above 0; the result is 0 there", arguments.b,
+         undivided);
   const auto invalid = std::ranges::count_if(a.texels, [](float x) { return !std::isfinite(x); });
   if (invalid > 0)
     throwInput(
@@ -40,23 +40,20 @@ void run(const ImageDivideArguments& arguments) {
         arguments.a, invalid, arguments.b);
   output.layers.push_back({"", "RGB", std::move(a)});
   if (clipped) output.layers.push_back({"clipped", "", *std::move(clipped)});
-  print(writeImage(arguments.output, output), false);
+  print(writeImage(arguments.output, output));
 }
 
 }  // namespace
 
 void addImageDivideCommand(Command image) {
-  const auto arguments = std::make_shared<ImageDivideArguments>();
-  Command command = image.addCommand(
-      "divide",
-      "Divide the colour of an image by that of another, in linear light: a photograph by its flat "
-      "field.");
-  command.addOption("A", arguments->a, "the image; its layer `clipped` is kept").required();
-  command.addOption("B", arguments->b, "what to divide by").required();
-  command
-      .addOption("-o,--output", arguments->output, "the image to write: .exr, .hdr, .pfm or .png")
-      .required();
-  command.callback([arguments] { run(*arguments); });
+  auto [command, a] =
+      image.addCommand<ImageDivideArguments>("divide",
+                                             "Divide the colour of an image by that of another, in "
+                                             "linear light: a photograph by its flat field.",
+                                             run);
+  command.addRequired("A", a.a, "the image; its layer `clipped` is kept");
+  command.addRequired("B", a.b, "what to divide by");
+  command.addRequired("-o,--output", a.output, "the image to write: .exr, .hdr, .pfm or .png");
 }
 
 }  // namespace chromeball

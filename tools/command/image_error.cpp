@@ -5,13 +5,12 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
 #include "base/text.h"
+#include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
-#include "input_image.h"
+#include "image_files.h"
+#include "json_values.h"
 #include "measure/false_color.h"
 #include "measure/flip.h"
 #include "measure/image_error.h"
@@ -19,8 +18,6 @@
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ImageErrorArguments {
   std::string a, b, output, map = "relative";
@@ -32,21 +29,18 @@ struct Findings {
   std::optional<double> flip;  // mean
 };
 
-// JSON has no infinity or NaN: null.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json toJson(const Findings& findings) {
+JsonValue toJson(const Findings& findings) {
   const ImageError& error = findings.error;
-  Json json = {{"mse", number(error.mse)},   {"relmse", number(error.relMse)},
-               {"bias", number(error.bias)}, {"max_difference", number(error.maxDifference)},
-               {"psnr", number(error.psnr)}, {"invalid", error.invalid}};
+  JsonValue json = {{"mse", orNull(error.mse)},   {"relmse", orNull(error.relMse)},
+                    {"bias", orNull(error.bias)}, {"max_difference", orNull(error.maxDifference)},
+                    {"psnr", orNull(error.psnr)}, {"invalid", error.invalid}};
   if (const auto& z = error.zScores)
     json["z"] = {{"count", z->count},
-                 {"mean", number(z->mean)},
-                 {"sd", number(z->standardDeviation)},
-                 {"beyond_3_sigma", number(z->fractionBeyond3)},
-                 {"largest", number(z->largest)},
-                 {"p_value", number(z->pValue)}};
+                 {"mean", orNull(z->mean)},
+                 {"sd", orNull(z->standardDeviation)},
+                 {"beyond_3_sigma", orNull(z->fractionBeyond3)},
+                 {"largest", orNull(z->largest)},
+                 {"p_value", orNull(z->pValue)}};
   if (findings.flip) json["flip"] = *findings.flip;
   return json;
 }
@@ -101,20 +95,21 @@ void writeMap(const ImageErrorArguments& arguments, const Image& map) {
           heatColor(logarithmic ? logLevel(number, maximum, kDecades) : number / maximum);
       for (int c = 0; c < 3; ++c) colors.at(x, y)[c] = srgbToLinear(float(color[size_t(c)]) / 255);
     }
-  print(writeImage(arguments.output, colors), false);
+  print(writeImage(arguments.output, colors));
   if (!arguments.json)
     fmt::print("map             {}, {} from black {:g} to yellow {:g}\n", arguments.map,
                logarithmic ? "logarithmic" : "linear",
                logarithmic ? maximum * std::pow(10, -kDecades) : 0, maximum);
 }
 
-void run(const ImageErrorArguments& arguments, bool isMapGiven) {
+void run(const ImageErrorArguments& arguments, const Command& command) {
   static constexpr std::array<std::string_view, 3> kMaps = {"relative", "z", "flip"};
   if (std::find(kMaps.begin(), kMaps.end(), arguments.map) == kMaps.end())
     throwInput("--map: `{}` is not known; {}", arguments.map,
                didYouMean(arguments.map, {kMaps.begin(), kMaps.end()}));
-  if (isMapGiven && arguments.output.empty())
-    throwInput("--map: has no effect without --output; give the image to write, or leave it out");
+  if (arguments.output.empty())
+    command.refuse({"--map"},
+                   "has no effect without --output; give the image to write, or leave it out");
   if (!arguments.output.empty()) checkOutputFile(arguments.output, {".png"});
   checkDistinct({arguments.output}, {arguments.a, arguments.b});
   const Side a(arguments.a), b(arguments.b);
@@ -134,10 +129,7 @@ void run(const ImageErrorArguments& arguments, bool isMapGiven) {
   if (arguments.map == "z" && !findings.error.zScores)
     throwInput("--map: neither {} nor {} has a variance layer; render with --aov variance",
                arguments.a, arguments.b);
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(findings), 2));
-  else
-    print(findings);
+  arguments.json ? printJson(toJson(findings)) : print(findings);
   if (!arguments.output.empty())
     writeMap(arguments, arguments.map == "flip" ? flipped
                         : arguments.map == "z"
@@ -148,20 +140,17 @@ void run(const ImageErrorArguments& arguments, bool isMapGiven) {
 }  // namespace
 
 void addImageErrorCommand(Command image) {
-  const auto arguments = std::make_shared<ImageErrorArguments>();
-  Command command = image.addCommand("error", "The error of image A against the reference B.");
-  command.addOption("A", arguments->a, "The image").required();
-  command.addOption("B", arguments->b, "The reference image").required();
-  command.addFlag("--json", arguments->json, "Print JSON");
-  command.addFlag("--flip", arguments->flip,
+  auto [command, a] = image.addCommand<ImageErrorArguments>(
+      "error", "The error of image A against the reference B.", run);
+  command.addRequired("A", a.a, "The image");
+  command.addRequired("B", a.b, "The reference image");
+  command.addFlag("--json", a.json, "Print JSON");
+  command.addFlag("--flip", a.flip,
                   "Also the perceived difference FLIP (Andersson et al. 2020, 2021), 0 to 1");
-  command.addOption("-o,--output", arguments->output, "Write the error in false colors, .png");
-  command
-      .addOption(
-          "--map", arguments->map,
-          "What --output shows: relative (error), z (in sigmas, needs variance layers) or flip")
-      .showsDefault();
-  command.callback([arguments, command] { run(*arguments, command.has("--map")); });
+  command.addOption("-o,--output", a.output, "Write the error in false colors, .png");
+  command.addWithDefault(
+      "--map", a.map,
+      "What --output shows: relative (error), z (in sigmas, needs variance layers) or flip");
 }
 
 }  // namespace chromeball

@@ -2,21 +2,17 @@
 // chromeball image flat-field SERIES... -o F.exr
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/flat_field.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "json_values.h"
 #include "messages.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ImageFlatFieldArguments {
   std::vector<std::string> files, positions;
@@ -58,8 +54,8 @@ Series measure(const ImageFlatFieldArguments& arguments) {
   return series;
 }
 
-Json toJson(const FlatField& field, const Series& series) {
-  Json samples = Json::array();
+JsonValue toJson(const FlatField& field, const Series& series) {
+  JsonValue samples = JsonValue::array();
   for (const SourceSample& sample : series.samples)
     samples.push_back({{"position", {sample.position.x, sample.position.y}},
                        {"radiance", vectorToJson(sample.radiance)}});
@@ -106,50 +102,41 @@ void run(const ImageFlatFieldArguments& arguments) {
   const FlatField field = fitFlatField(series.samples, width, height, centre);
   if (field.largest < kReaches)
     warn(
-        fmt::format("the source is never further from the centre than {:.2g} of half the "
-                    "diagonal: far beyond, the response stays constant",
-                    field.largest));
+        "the source is never further from the centre than {:.2g} of half the diagonal: "
+        "far beyond, the response stays constant",
+        field.largest);
   if (const double error = std::max({field.rmsError.x, field.rmsError.y, field.rmsError.z});
       error > kPoorFit)
     warn(
-        fmt::format("the samples differ from the fit by {:.2g}%: is the source constant, and of "
-                    "even radiance within --radius?",
-                    100 * error));
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(field, series), 2));
-  else
-    print(field, series);
-  print(writeImage(arguments.output, field.image(width, height)), false);
+        "the samples differ from the fit by {:.2g}%: is the source constant, and of "
+        "even radiance within --radius?",
+        100 * error);
+  arguments.json ? printJson(toJson(field, series)) : print(field, series);
+  print(writeImage(arguments.output, field.image(width, height)));
 }
 
 }  // namespace
 
 void addImageFlatFieldCommand(Command image) {
-  const auto arguments = std::make_shared<ImageFlatFieldArguments>();
-  Command command = image.addCommand(
+  auto [command, a] = image.addCommand<ImageFlatFieldArguments>(
       "flat-field",
       "Fit how a lens darkens the image towards the corners, 1 + a2 r^2 + a4 r^4 + a6 r^6, to "
-      "photographs that show one constant source at different places.");
+      "photographs that show one constant source at different places.",
+      run);
+  command.addRequired("SERIES", a.files,
+                      "linear photographs with equal exposure, at least four, each with the source "
+                      "at another distance from the centre");
+  command.addRequired("-o,--output", a.output,
+                      "the response to write, 1 in the centre: .exr, .hdr, .pfm or .png");
   command
-      .addOption("SERIES", arguments->files,
-                 "linear photographs with equal exposure, at least four, each with the source at "
-                 "another distance from the centre")
-      .required();
-  command
-      .addOption("-o,--output", arguments->output,
-                 "the response to write, 1 in the centre: .exr, .hdr, .pfm or .png")
-      .required();
-  command
-      .addOption("--at", arguments->positions,
+      .addOption("--at", a.positions,
                  "X,Y: where the source is, in pixels; one for each photograph, in order. Without "
                  "it the brightest spot of each")
       .onePerName();
-  command.addOption("--radius", arguments->radius, "of the disc that is averaged, in pixels")
-      .showsDefault();
-  command.addOption("--centre", arguments->centre,
+  command.addWithDefault("--radius", a.radius, "of the disc that is averaged, in pixels");
+  command.addOption("--centre", a.centre,
                     "X,Y: of the lens, in pixels; without it the middle of the image");
-  command.addFlag("--json", arguments->json, "print JSON");
-  command.callback([arguments] { run(*arguments); });
+  command.addFlag("--json", a.json, "print JSON");
 }
 
 }  // namespace chromeball

@@ -8,18 +8,17 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "probe/probe.h"
 #include "probe/sun_extraction.h"
+#include "probe_options.h"
 #include "relight/stage/light_layers.h"
-#include "relit_attributes.h"
-#include "rotation_option.h"
 
 namespace chromeball {
 namespace {
@@ -114,8 +113,8 @@ Image neededLayer(const ImageFile& file, const std::string& path, const std::str
   const std::optional<Image> layer = findLayer(file, name);
   if (!layer || layer->channels != channels)
     throwInput(
-        "{}: has no layer `{}`; `render --aov albedo,normal,ao,bent_normal` writes what "
-        "--probe needs",
+        "{}: has no layer `{}`; `render --aov albedo,normal,ao,bent_normal` writes what --probe "
+        "needs",
         path, name);
   return *layer;
 }
@@ -153,11 +152,54 @@ std::string gainsInWords(const ImageRelightArguments& a, const Metadata& metadat
   return text + "gain=" + a.gains;
 }
 
+// The attributes of a render that are no longer true once its light is another: of how bright the
+// sources are; of the sources, the paths from them, their samples and the file.
+constexpr const char* kOfNoise[] = {"noise", "noise_median", "noise_p95", "denoised_noise",
+                                    "clamp_light_removed"};
+constexpr auto kOfLight = std::to_array<const char*>({"probe",
+                                                      "probe-mapping",
+                                                      "probe-found",
+                                                      "probe-rotation",
+                                                      "probe-scale",
+                                                      "files",
+                                                      "lights",
+                                                      "light-units",
+                                                      "light-from",
+                                                      "sun-angle",
+                                                      "show-lights",
+                                                      "strategy",
+                                                      "mis",
+                                                      "guide",
+                                                      "regularize",
+                                                      "clamp",
+                                                      "denoise",
+                                                      "integrator",
+                                                      "ao",
+                                                      "reflection-occlusion",
+                                                      "irradiance-cache",
+                                                      "max-depth",
+                                                      "max-diffuse-depth",
+                                                      "max-specular-depth",
+                                                      "max-transmission-depth",
+                                                      "glass-shadows",
+                                                      "samples",
+                                                      "samplesOfAll",
+                                                      "adaptive",
+                                                      "seed",
+                                                      "shard",
+                                                      "noise-limit",
+                                                      "time-limit",
+                                                      "rays",
+                                                      "seconds",
+                                                      "command",
+                                                      "aov"});
+
 // The file's attributes without those that are no longer true, and how it was relit.
 Metadata relitMetadata(const ImageRelightArguments& arguments, const ImageFile& file) {
   Metadata kept = keptMetadata(file, arguments.in, arguments.out);
-  eraseNoise(kept);
-  if (!arguments.probe.empty()) eraseLight(kept);
+  for (const char* name : kOfNoise) kept.erase(name);
+  if (!arguments.probe.empty())
+    for (const char* name : kOfLight) kept.erase(name);
   kept["relit"] =
       arguments.probe.empty() ? gainsInWords(arguments, file.metadata) : lightInWords(arguments);
   return kept;
@@ -187,7 +229,7 @@ void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& tr
   output.metadata = relitMetadata(arguments, file);
   output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, color));
-  print(writeInWindow(arguments.out, std::move(output), arguments.in, transform), false);
+  print(writeInWindow(arguments.out, std::move(output), arguments.in, transform));
 }
 
 void runGains(const ImageRelightArguments& arguments, const DisplayTransform& transform) {
@@ -204,14 +246,13 @@ void runGains(const ImageRelightArguments& arguments, const DisplayTransform& tr
   for (size_t i = 0; i < gains.size(); ++i)
     output.layers.push_back(
         {std::string(kPrefix) + groups.names[i], "RGB", std::move(groups.layers[i])});
-  print(writeInWindow(arguments.out, std::move(output), arguments.in, transform), false);
+  print(writeInWindow(arguments.out, std::move(output), arguments.in, transform));
 }
 
 void checkEffects(const ImageRelightArguments& arguments, const Command& command) {
   if (!arguments.gains.empty())
-    for (const char* option : {"--bent", "--suns", "--add", "--rotation", "--scale", "--mapping"})
-      if (command.has(option))
-        throwInput("{}: has no effect with --gain; it is for --probe, leave it out", option);
+    command.refuse({"--bent", "--suns", "--add", "--rotation", "--scale", "--mapping"},
+                   "has no effect with --gain; it is for --probe, leave it out");
   if (lowerExtension(arguments.out) == ".png") return;
   for (const auto& [given, option] : {std::pair(arguments.exposure != 0, "--exposure"),
                                       std::pair(arguments.tone != "none", "--tonemap")})
@@ -233,36 +274,29 @@ void run(const ImageRelightArguments& arguments, const Command& command) {
 }  // namespace
 
 void addImageRelightCommand(Command image) {
-  const auto arguments = std::make_shared<ImageRelightArguments>();
-  Command command = image.addCommand(
+  auto [command, a] = image.addCommand<ImageRelightArguments>(
       "relight",
       "Mix the light groups of a render anew (`render --aov light_groups`), or light its surfaces "
-      "by another probe (`render --aov albedo,normal,ao,bent_normal`).");
-  command.addOption("GROUPS", arguments->in, "the .exr with the layers").required();
-  command.addOption("--gain", arguments->gains,
+      "by another probe (`render --aov albedo,normal,ao,bent_normal`).",
+      run);
+  command.addRequired("GROUPS", a.in, "the .exr with the layers");
+  command.addOption("--gain", a.gains,
                     "NAME=GAIN or NAME=R,G,B for each group to change: sun=2,lamp=1,0.8,0.6");
-  command.addOption("--probe", arguments->probe,
+  command.addOption("--probe", a.probe,
                     "light by this probe: albedo / pi times ambient occlusion times irradiance");
-  command.addFlag("--bent", arguments->bent, "with --probe: irradiance on the bent normals");
-  command.addFlag("--suns", arguments->leavesSunsOut,
-                  "with --probe: without its suns, which `render --light-from suns` renders "
-                  "with their shadows");
-  command.addOption("--add", arguments->added,
-                    "with --probe: a picture to add, such as that of the suns");
-  addRotationOption(command, arguments->rotation);
-  command.addOption("--scale", arguments->scale, "X or R,G,B: factor of the probe").showsDefault();
-  command.addOption("--mapping", arguments->mapping, "of the probe; auto detects it")
-      .showsDefault();
-  command
-      .addOption("-o,--output", arguments->out,
-                 "the image to write: .exr (with the changed groups), .hdr, .pfm or .png")
-      .required();
-  command.addOption("--exposure", arguments->exposure, "of a .png, in stops");
-  command
-      .addOption("--tonemap", arguments->tone,
-                 fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
-      .showsDefault();
-  command.callback([arguments, command] { run(*arguments, command); });
+  command.addFlag("--bent", a.bent, "with --probe: irradiance on the bent normals");
+  command.addFlag("--suns", a.leavesSunsOut,
+                  "with --probe: without its suns, which `render --light-from suns` renders with "
+                  "their shadows");
+  command.addOption("--add", a.added, "with --probe: a picture to add, such as that of the suns");
+  addRotationOption(command, a.rotation);
+  command.addWithDefault("--scale", a.scale, "X or R,G,B: factor of the probe");
+  command.addWithDefault("--mapping", a.mapping, "of the probe; auto detects it");
+  command.addRequired("-o,--output", a.out,
+                      "the image to write: .exr (with the changed groups), .hdr, .pfm or .png");
+  command.addOption("--exposure", a.exposure, "of a .png, in stops");
+  command.addWithDefault("--tonemap", a.tone,
+                         fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")));
 }
 
 }  // namespace chromeball

@@ -5,10 +5,10 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "image_commands.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "layer_view.h"
 #include "messages.h"
 #include "session/image_header.h"
@@ -60,26 +60,23 @@ void run(const ImageViewArguments& arguments) {
   const Image shown = arguments.layer.empty()
                           ? colorAndAlphaOf(openImageFile(arguments.in), arguments.in)
                           : viewOf(arguments.in, arguments.layer);
-  print(writeImage(arguments.out, shown, transform), false);
+  print(writeImage(arguments.out, shown, transform));
 }
 
 }  // namespace
 
 void addImageViewCommand(Command image) {
-  const auto arguments = std::make_shared<ImageViewArguments>();
-  Command command = image.addCommand("view", "Convert an image for display.");
-  command.addOption("IN", arguments->in, "The image").required();
-  command.addOption("OUT", arguments->out, "The image to write, .png").required();
-  command.addOption("--exposure", arguments->exposure, "Stops: radiance times 2^STOPS");
-  command
-      .addOption("--tonemap", arguments->tone,
-                 fmt::format("Tone operator: {}", fmt::join(toneOperatorNames(), ", ")))
-      .showsDefault();
-  command.addOption("--layer", arguments->layer,
-                    "A layer in place of the colour: albedo, normal (-1..1 as 0..1), depth (near "
-                    "is white), node and "
-                    "material (one colour each, printed with its name), variance, samples, ...");
-  command.callback([arguments] { run(*arguments); });
+  auto [command, a] =
+      image.addCommand<ImageViewArguments>("view", "Convert an image for display.", run);
+  command.addRequired("IN", a.in, "The image");
+  command.addRequired("OUT", a.out, "The image to write, .png");
+  command.addOption("--exposure", a.exposure, "Stops: radiance times 2^STOPS");
+  command.addWithDefault("--tonemap", a.tone,
+                         fmt::format("Tone operator: {}", fmt::join(toneOperatorNames(), ", ")));
+  command.addOption(
+      "--layer", a.layer,
+      "A layer in place of the colour: albedo, normal (-1..1 as 0..1), depth (near is white), node "
+      "and material (one colour each, printed with its name), variance, samples, ...");
 }
 
 }  // namespace chromeball

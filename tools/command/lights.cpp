@@ -1,43 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball lights PROBE --method NAME --count N -o FILE
+#include "lights.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
 
 #include "base/error.h"
 #include "base/file.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "light_options.h"
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_preview.h"
 #include "lighting/fit/light_descent.h"
 #include "lighting/methods.h"
-#include "lights_polygons.h"
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
-#include "rotation_option.h"
+#include "probe_options.h"
+#include "progress_bar.h"
 
 namespace chromeball {
 namespace {
 
 constexpr double kMaxAngle = 10;  // degrees; more is no longer a light from one direction
-
-struct LightsArguments {
-  LightsProbe probe;
-  std::string method, output, format, preview, sphere, maxError, polygons, units;
-  std::optional<std::string> seed;
-  std::optional<int> suggest;  // so many polygons
-  std::optional<int> normals;  // of the sphere
-  std::optional<double> angle;
-  Rotation rotation;
-  bool regions = false;
-  LightRequest request;
-};
 
 // "5" or "5%".
 double parsePercent(std::string text, std::string_view option) {
@@ -77,8 +65,8 @@ void checkPictures(const LightingMethod& method, const LightsArguments& argument
 
 void warnOfUnits(const LightsArguments& arguments, LightFormat format) {
   if (!arguments.units.empty() && format != LightFormat::Gltf)
-    warn(fmt::format("--light-units: has no effect on {}, which holds {}", arguments.output,
-                     format == LightFormat::OpenGl ? "radiance" : "irradiance in W/m^2"));
+    warn("--light-units: has no effect on {}, which holds {}", arguments.output,
+         format == LightFormat::OpenGl ? "radiance" : "irradiance in W/m^2");
 }
 
 // Warns of light that was asked for or found, but is not in the file where other programs look for
@@ -87,17 +75,17 @@ void warnOfLosses(const LightsArguments& arguments, const MadeLights& made, Ligh
   const bool isGltf = format == LightFormat::Gltf;
   constexpr const char* kUnread = "is only in `extras`, which other programs do not read";
   if (made.ambient && (isGltf || format == LightFormat::Csv))
-    warn(fmt::format("{}: the fitted ambient light {}; a .json holds it", arguments.output,
-                     isGltf ? kUnread : "is not in a .csv"));
+    warn("{}: the fitted ambient light {}; a .json holds it", arguments.output,
+         isGltf ? kUnread : "is not in a .csv");
   const bool hasAngle = std::any_of(made.lights.begin(), made.lights.end(),
                                     [](const DirectionalLight& light) { return light.angle > 0; });
   if (hasAngle && (isGltf || format == LightFormat::OpenGl))
-    warn(fmt::format("{}: the lights' angular diameter {}; a .json holds it", arguments.output,
-                     isGltf ? kUnread : "is not in a header for OpenGL"));
+    warn("{}: the lights' angular diameter {}; a .json holds it", arguments.output,
+         isGltf ? kUnread : "is not in a header for OpenGL");
   constexpr size_t kOpenGlLights = 8;
   if (format == LightFormat::OpenGl && made.lights.size() > kOpenGlLights)
-    warn(fmt::format("{}: {} lights; OpenGL is sure to have {}", arguments.output,
-                     made.lights.size(), kOpenGlLights));
+    warn("{}: {} lights; OpenGL is sure to have {}", arguments.output, made.lights.size(),
+         kOpenGlLights);
 }
 
 std::string rgbText(const dvec3& c) { return fmt::format("{:.4g} {:.4g} {:.4g}", c.x, c.y, c.z); }
@@ -109,20 +97,20 @@ void writeSphere(const std::string& file, const Image& latLong, const MadeLights
   const Rgb ambient = made.ambient.value_or(Rgb(0));
   const IrradianceSpheres spheres{subdivisions, exactIrradiance(latLong, normals),
                                   irradianceOf(made.lights, ambient, normals), made.ambient};
-  print(writeImage(file, irradianceSpheres(spheres)), false);
+  print(writeImage(file, irradianceSpheres(spheres)));
   const LightError error = lightError(spheres.lights, spheres.probe);
   const auto mean = [](const std::vector<dvec3>& all) {
     return std::accumulate(all.begin(), all.end(), dvec3(0)) / double(all.size());
   };
   fmt::print(
-      "sphere      mean error {:.4g}%, maximum {:.4g}% over {} normals; mean irradiance of "
-      "the probe {}, of the lights {}",
+      "sphere      mean error {:.4g}%, maximum {:.4g}% over {} normals; mean irradiance of the "
+      "probe {}, of the lights {}",
       error.mean, error.max, normals.size(), rgbText(mean(spheres.probe)),
       rgbText(mean(spheres.lights)));
   if (made.ambient) fmt::print("; ambient radiance {}", rgbText(dvec3(ambient)));
   fmt::print(
-      "\n            columns: probe, lights, {:g} x (lights - probe) about grey{}; rows: facing "
-      "+Z (front), -Z (back)\n",
+      "\n            columns: probe, lights, {:g} x (lights - probe) about grey{}; rows: facing +Z "
+      "(front), -Z (back)\n",
       differenceGain(spheres), made.ambient ? ", ambient light" : "");
 }
 
@@ -132,45 +120,30 @@ LightUnits unitsOf(const LightsArguments& arguments) {
 }
 
 // Makes polygons instead of lights by a method.
-void runPolygonsOf(const LightsArguments& arguments) {
+void runPolygonsOf(const LightsArguments& arguments, const Command& command) {
   if (!arguments.method.empty())
     throwInput("--method: excludes --suggest and --polygons; give one");
-  const LightRequest& request = arguments.request;
-  const std::pair<const char*, bool> others[] = {
-      {"--count", request.count.has_value()},       {"--recursion", request.levels.has_value()},
-      {"--max-error", !arguments.maxError.empty()}, {"--ambient", request.ambient},
-      {"--angle", arguments.angle.has_value()},     {"--regions", arguments.regions},
-      {"--sphere", !arguments.sphere.empty()},      {"--normals", arguments.normals.has_value()},
-      {"--seed", arguments.seed.has_value()}};
-  for (const auto& [option, isGiven] : others)
-    if (isGiven) throwInput("{}: is for the lights of a --method, not for polygons", option);
+  command.refuse({"--count", "--recursion", "--max-error", "--ambient", "--angle", "--regions",
+                  "--sphere", "--normals", "--seed"},
+                 "is for the lights of a --method, not for polygons");
   if (arguments.suggest)
-    for (const auto& [option, text] :
-         {std::pair("--format", &arguments.format), std::pair("--light-units", &arguments.units)})
-      if (!text->empty())
-        throwInput("{}: is for lights; --suggest writes polygons, a .json; leave it out", option);
+    command.refuse({"--format", "--light-units"},
+                   "is for lights; --suggest writes polygons, a .json; leave it out");
   const LightFormat format = arguments.suggest
                                  ? LightFormat::Json
                                  : lightFormat(arguments.output, arguments.format, "--format");
   checkReplaceable(arguments.output);
   if (!arguments.preview.empty()) checkWritable(arguments.preview);
   arguments.probe.checkMask();
-  runPolygons({.probe = arguments.probe,
-               .output = arguments.output,
-               .preview = arguments.preview,
-               .suggest = arguments.suggest,
-               .polygons = arguments.polygons,
-               .format = format,
-               .units = unitsOf(arguments),
-               .rotation = arguments.rotation});
+  runPolygons(arguments, format, unitsOf(arguments));
   warnOfUnits(arguments, format);
 }
 
-void run(LightsArguments arguments) {
-  if (arguments.suggest || !arguments.polygons.empty()) return runPolygonsOf(arguments);
+void run(const LightsArguments& arguments, const Command& command) {
+  if (arguments.suggest || !arguments.polygons.empty()) return runPolygonsOf(arguments, command);
   if (arguments.method.empty())
     throwInput("--method: is missing; or give --suggest N or --polygons FILE");
-  LightRequest& request = arguments.request;
+  LightRequest request = arguments.request;
   const LightingMethod& method = lightMethod(arguments.method, "--method");
   if (!arguments.maxError.empty())
     request.maxErrorPercent = parsePercent(arguments.maxError, "--max-error");
@@ -185,7 +158,7 @@ void run(LightsArguments arguments) {
   checkReplaceable(arguments.output);
   checkPictures(method, arguments);
   if (arguments.seed && !method.lights.isStochastic)
-    warn(fmt::format("--seed: has no effect: {} is not stochastic", method.name));
+    warn("--seed: has no effect: {} is not stochastic", method.name);
 
   const Image latLong = arguments.probe.load();
   std::optional<BusyLine> busy("making lights");
@@ -207,73 +180,66 @@ void run(LightsArguments arguments) {
     print(writeImage(arguments.preview,
                      arguments.regions
                          ? lightPreview(latLong, lights, method.lights.regions(latLong, request))
-                         : lightPreview(latLong, lights)),
-          false);
+                         : lightPreview(latLong, lights)));
   fmt::print("lights      {}\n", lights.size());
   if (meanError) fmt::print("mean error  {:.3g}%\n", *meanError);
   if (!arguments.sphere.empty()) writeSphere(arguments.sphere, latLong, made, subdivisions);
   if (meanError && request.maxErrorPercent && *meanError > *request.maxErrorPercent)
-    warn(fmt::format("--max-error: {} lights do not reach {}%", lights.size(),
-                     *request.maxErrorPercent));
+    warn("--max-error: {} lights do not reach {}%", lights.size(), *request.maxErrorPercent);
 }
 
 }  // namespace
 
 void addLightsCommand(Command app) {
-  const auto arguments = std::make_shared<LightsArguments>();
-  Command command =
-      app.addCommand("lights", "Replace a probe by directional lights, for other programs.");
-  command.addOption("PROBE", arguments->probe.file, "the probe's image").required();
+  auto [command, a] = app.addCommand<LightsArguments>(
+      "lights", "Replace a probe by directional lights, for other programs.", run);
+  command.addRequired("PROBE", a.probe.file, "the probe's image");
   command.footer(lightMethodHelp());
-  command.addOption("--method", arguments->method, "how to find the lights; see below");
-  command.addOption("--suggest", arguments->suggest,
+  command.addOption("--method", a.method, "how to find the lights; see below");
+  command.addOption("--suggest", a.suggest,
                     "in place of a method: propose polygons around so many bright regions, as a "
                     ".json that [[source]] reads");
-  command.addOption("--polygons", arguments->polygons,
+  command.addOption("--polygons", a.polygons,
                     "in place of a method: a light for each polygon of this .json");
-  command.addOption("--count", arguments->request.count,
-                    "number of lights; of cube-grid: of lights along a face's edge; of suns: the "
-                    "maximum");
-  command
-      .addOption("-o,--output", arguments->output,
-                 "the lights to write: .json, .gltf (KHR_lights_punctual), .csv or .h (OpenGL)")
-      .required();
-  command.addOption("--format", arguments->format,
+  command.addOption(
+      "--count", a.request.count,
+      "number of lights; of cube-grid: of lights along a face's edge; of suns: the maximum");
+  command.addRequired(
+      "-o,--output", a.output,
+      "the lights to write: .json, .gltf (KHR_lights_punctual), .csv or .h (OpenGL)");
+  command.addOption("--format", a.format,
                     "of the output, whatever its name: json, gltf, csv or opengl (a C header of "
                     "values for glLightfv)");
-  command.addOption("--angle", arguments->angle,
-                    "angular diameter of the written lights in degrees, up to 10; a .json then "
-                    "has their radiance too");
-  command.addOption("--light-units", arguments->units,
+  command.addOption("--angle", a.angle,
+                    "angular diameter of the written lights in degrees, up to 10; a .json then has "
+                    "their radiance too");
+  command.addOption("--light-units", a.units,
                     "of a .gltf: photometric (683 lux for 1 W/m^2, as Blender reads them; the "
                     "default), or radiometric (1 lux)");
-  command.addOption("--preview", arguments->preview,
-                    "write an image of the probe with a dot at each light");
-  command.addFlag("--regions", arguments->regions,
+  command.addOption("--preview", a.preview, "write an image of the probe with a dot at each light");
+  command.addFlag("--regions", a.regions,
                   "in the preview: outline the region of each light, of penrose the tiling");
-  command.addOption("--sphere", arguments->sphere,
-                    "write an image of white spheres: in the left column lit by the probe, in "
-                    "the middle by the lights, in the right one their difference about grey, "
-                    "times a power of two that is printed; above the front (+Z), below the back; "
-                    "at the right edge a square of the ambient light");
   command.addOption(
-      "--normals", arguments->normals,
-      "number of faces of these spheres: 20 times a power of 4, up to 1310720; 20480 by "
-      "default");
-  command.addOption("--recursion", arguments->request.levels,
-                    "median-cut: in place of --count, cut all regions this many times: 8 lights "
-                    "of 3");
-  command.addOption("--max-error", arguments->maxError,
-                    "irradiance-fit: find the smallest number of lights, up to --count, whose "
-                    "mean error is no greater; percent of the mean irradiance");
-  command.addFlag("--ambient", arguments->request.ambient,
+      "--sphere", a.sphere,
+      "write an image of white spheres: in the left column lit by the probe, in the middle by the "
+      "lights, in the right one their difference about grey, times a power of two that is printed; "
+      "above the front (+Z), below the back; at the right edge a square of the ambient light");
+  command.addOption(
+      "--normals", a.normals,
+      "number of faces of these spheres: 20 times a power of 4, up to 1310720; 20480 by default");
+  command.addOption(
+      "--recursion", a.request.levels,
+      "median-cut: in place of --count, cut all regions this many times: 8 lights of 3");
+  command.addOption("--max-error", a.maxError,
+                    "irradiance-fit: find the smallest number of lights, up to --count, whose mean "
+                    "error is no greater; percent of the mean irradiance");
+  command.addFlag("--ambient", a.request.ambient,
                   "irradiance-fit: also fit a constant radiance from all directions");
-  command.addOption("--seed", arguments->seed, "of stochastic methods");
-  addRotationOption(command, arguments->rotation,
+  command.addOption("--seed", a.seed, "of stochastic methods");
+  addRotationOption(command, a.rotation,
                     ": the lights that are written; mask and images are those of the probe's map");
-  command.addOption("--probe-mask", arguments->probe.mask, kMaskHelp);
-  command.addOption("--mapping", arguments->probe.mapping, "the mapping of PROBE; auto detects it");
-  command.callback([arguments] { run(*arguments); });
+  command.addOption("--probe-mask", a.probe.mask, kMaskHelp);
+  command.addOption("--mapping", a.probe.mapping, "the mapping of PROBE; auto detects it");
 }
 
 }  // namespace chromeball

@@ -7,15 +7,15 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "busy_line.h"
 #include "commands.h"
 #include "image/io/output_file.h"
-#include "light_options.h"
 #include "lighting/fit/light_descent.h"
 #include "lighting/methods.h"
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/irradiance.h"
+#include "probe_options.h"
+#include "progress_bar.h"
 #include "study/report/log_log_plot.h"
 
 namespace chromeball {
@@ -96,7 +96,8 @@ void removeRepeats(std::vector<T>& all) {
   all = std::move(once);
 }
 
-void run(LightsErrorArguments arguments) {
+void run(const LightsErrorArguments& given) {
+  LightsErrorArguments arguments = given;
   removeRepeats(arguments.methods);
   removeRepeats(arguments.counts);
   removeRepeats(arguments.levels);
@@ -137,26 +138,25 @@ void run(LightsErrorArguments arguments) {
 }  // namespace
 
 void addLightsErrorCommand(Command app) {
-  const auto arguments = std::make_shared<LightsErrorArguments>();
-  Command command = app.addCommand(
-      "lights-error", "The error of the irradiance of directional lights against their probe.");
-  command.addOption("PROBE", arguments->probe.file, "the probe's image").required();
+  auto [command, a] = app.addCommand<LightsErrorArguments>(
+      "lights-error", "The error of the irradiance of directional lights against their probe.",
+      run);
+  command.addRequired("PROBE", a.probe.file, "the probe's image");
   command.footer(lightMethodHelp());
-  command.addOption("--methods", arguments->methods, "one or several; see below")
-      .required()
-      .delimiter(',');
-  command.addOption("--counts", arguments->counts, "numbers of lights: 2,4,8,...").delimiter(',');
+  command.addRequired("--methods", a.methods, "one or several; see below").delimiter(',');
+  command.addOption("--counts", a.counts, "numbers of lights: 2,4,8,...").delimiter(',');
   command
-      .addOption("--recursion", arguments->levels,
+      .addOption("--recursion", a.levels,
                  "median-cut: in place of --counts, how often all regions are cut: 1,2,3,...")
       .delimiter(',');
-  command.addOption("--normals", arguments->normals, kNormalsHelp).showsDefault();
-  command.addOption("--csv", arguments->csv, "write the table to this file");
-  command.addOption("--plot", arguments->plot, "write a plot of the table to this .svg");
-  command.addOption("--seed", arguments->seed, "of stochastic methods");
-  command.addOption("--probe-mask", arguments->probe.mask, kMaskHelp);
-  command.addOption("--mapping", arguments->probe.mapping, "the mapping of PROBE; auto detects it");
-  command.callback([arguments] { run(*arguments); });
+  command.addWithDefault(
+      "--normals", a.normals,
+      "number of surface orientations to compare: 20 times a power of 4, up to 1310720");
+  command.addOption("--csv", a.csv, "write the table to this file");
+  command.addOption("--plot", a.plot, "write a plot of the table to this .svg");
+  command.addOption("--seed", a.seed, "of stochastic methods");
+  command.addOption("--probe-mask", a.probe.mask, kMaskHelp);
+  command.addOption("--mapping", a.probe.mapping, "the mapping of PROBE; auto detects it");
 }
 
 }  // namespace chromeball

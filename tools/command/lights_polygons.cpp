@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lights_polygons.h"
+#include "lights.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -37,7 +37,7 @@ Partition partitionOf(const Image& latLong, const std::vector<PolygonSource>& so
   return partition;
 }
 
-std::vector<SphericalPolygon> polygonsOf(const PolygonRequest& request, const LoadedProbe& probe) {
+std::vector<SphericalPolygon> polygonsOf(const LightsArguments& request, const LoadedProbe& probe) {
   if (request.suggest) return suggestPolygons(probe.latLong, *request.suggest);
   std::vector<SphericalPolygon> polygons;
   for (const PolygonCorners& corners : readPolygons(request.polygons))
@@ -48,7 +48,7 @@ std::vector<SphericalPolygon> polygonsOf(const PolygonRequest& request, const Lo
 
 }  // namespace
 
-void runPolygons(const PolygonRequest& request) {
+void runPolygons(const LightsArguments& request, LightFormat format, LightUnits units) {
   constexpr int kMaxSuggested = 1000;
   if (request.suggest && !(request.rotation == Rotation()))
     throwInput("--rotation: polygons are places in the probe's image; it turns lights");
@@ -75,13 +75,12 @@ void runPolygons(const PolygonRequest& request) {
                  .method = "polygons",
                  .ambient = {},
                  .lights = turned(lights, request.rotation),
-                 .units = request.units},
-                request.format);
+                 .units = units},
+                format);
   }
   if (!request.preview.empty())
     print(writeImage(request.preview, lightPreview(probe.latLong, lights,
-                                                   {partitionOf(probe.latLong, sources), {}})),
-          false);
+                                                   {partitionOf(probe.latLong, sources), {}})));
   fmt::print("polygons    {}\n", sources.size());
   for (size_t i = 0; i < sources.size(); ++i) {
     const Rgb& e = lights[i].irradiance;

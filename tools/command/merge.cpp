@@ -10,7 +10,6 @@
 #include "image/io/output_file.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "image_noise_text.h"
 #include "messages.h"
 #include "parts/merge.h"
 #include "progress_bar.h"
@@ -73,20 +72,15 @@ void run(const MergeArguments& arguments) {
 }  // namespace
 
 void addMergeCommand(Command app) {
-  const auto arguments = std::make_shared<MergeArguments>();
-  Command command = app.addCommand(
-      "merge", "Put the parts of a render together, of `render --shard` and `--crop`");
+  auto [command, a] = app.addCommand<MergeArguments>(
+      "merge", "Put the parts of a render together, of `render --shard` and `--crop`", run);
+  command.addRequired("PART", a.parts,
+                      "All parts, .exr, in any order; the image has the same bits for each");
   command
-      .addOption("PART", arguments->parts,
-                 "All parts, .exr, in any order; the image has the same bits for each")
-      .required();
-  command
-      .addOption("-o,--output", arguments->outputs,
-                 "Image to write: .exr, .hdr, .pfm or .png; may be given repeatedly")
-      .required()
+      .addRequired("-o,--output", a.outputs,
+                   "Image to write: .exr, .hdr, .pfm or .png; may be given repeatedly")
       .onePerName();
-  command.addFlag("--quiet", arguments->quiet, "Show neither progress nor the noise");
-  command.callback([arguments] { run(*arguments); });
+  command.addFlag("--quiet", a.quiet, "Show neither progress nor the noise");
 }
 
 }  // namespace chromeball

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "messages.h"
 
-#include <fmt/format.h>
-
 #include <csignal>
 #include <cstdio>
 #include <ctime>

@@ -3,6 +3,8 @@
 // on.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 #include <string_view>
 
@@ -13,11 +15,21 @@ namespace chromeball {
 void warn(const std::string& text);  // "chromeball: warning: ..."; --quiet does not silence it
 void note(const std::string& text);  // "chromeball: ...", printable() (base/text.h)
 
+// The same with a format and its arguments.
+template <class First, class... More>
+void warn(fmt::format_string<First, More...> format, First&& first, More&&... more) {
+  warn(fmt::vformat(format, fmt::make_format_args(first, more...)));
+}
+template <class First, class... More>
+void note(fmt::format_string<First, More...> format, First&& first, More&&... more) {
+  note(fmt::vformat(format, fmt::make_format_args(first, more...)));
+}
+
 // As it is: parts of lines, and controls of the terminal.
 void writeError(std::string_view text);
 
 // All warnings, and the notes unless `quiet`; each with the option that resolves it.
-void print(const Messages& messages, bool quiet);
+void print(const Messages& messages, bool quiet = false);
 
 // The end of a sentence: "; try --probe-scale 0.019", or "; see --memory GB"; empty without one.
 std::string inWords(const std::optional<Remedy>& remedy);

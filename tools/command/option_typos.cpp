@@ -23,8 +23,8 @@ constexpr auto kEquivalents = std::to_array<Equivalents>({
      " width height w resolution res dimensions image-size x y resolution-x resolution-y "
      "film-size "},
     {"--probe FILE",
-     " envmap env env-map environment environment-map hdri hdr ibl sky skydome background "
-     "world light infinite-light environment-image "},
+     " envmap env env-map environment environment-map hdri hdr ibl sky skydome background world "
+     "light infinite-light environment-image "},
     {"--probe-rotation YAW[,PITCH,ROLL]",
      " rotation rotate env-rotation envmap-rotation hdri-rotation environment-rotation yaw "},
     {"--probe-scale R[,G,B]",

@@ -4,23 +4,19 @@
 #include <optional>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
-#include "busy_line.h"
+#include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
+#include "json_values.h"
 #include "messages.h"
 #include "probe/capture/align.h"
 #include "probe/convert.h"
 #include "probe/load.h"
-#include "probe_commands.h"
-#include "write_probe.h"
+#include "progress_bar.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ProbeAlignArguments {
   std::string first, second, out, firstMapping = "auto", secondMapping = "auto";
@@ -29,7 +25,7 @@ struct ProbeAlignArguments {
 
 constexpr double kPoor = 0.5;  // correlation
 
-Json toJson(const ProbeFit& fit) {
+JsonValue toJson(const ProbeFit& fit) {
   const Rotation::Angles angles = fit.rotation.angles();
   const glm::dquat q = fit.rotation.quaternion();
   return {{"yaw", angles.yaw},
@@ -39,16 +35,15 @@ Json toJson(const ProbeFit& fit) {
           {"correlation", fit.correlation}};
 }
 
-Json toJson(const ProbeAlignArguments& arguments, const ProbeAlignment& alignment) {
-  Json json = {{"a", arguments.first}, {"b", arguments.second}};
+JsonValue toJson(const ProbeAlignArguments& arguments, const ProbeAlignment& alignment) {
+  JsonValue json = {{"a", arguments.first}, {"b", arguments.second}};
   json.update(toJson(static_cast<const ProbeFit&>(alignment)));
   const dvec3& errors = alignment.standardErrors;
   json["standard_error"] = alignment.standardError();
-  json["standard_errors_xyz"] = {errors.x, errors.y, errors.z};
+  json["standard_errors_xyz"] = vectorToJson(errors);
   json["ambiguous"] = !alignment.others.empty();
-  json["axis"] = alignment.axis ? Json{alignment.axis->x, alignment.axis->y, alignment.axis->z}
-                                : Json(nullptr);
-  json["others"] = Json::array();
+  json["axis"] = alignment.axis ? vectorToJson(*alignment.axis) : JsonValue();
+  json["others"] = JsonValue::array();
   for (const ProbeFit& fit : alignment.others) json["others"].push_back(toJson(fit));
   return json;
 }
@@ -74,13 +69,11 @@ void warnOfDoubt(const ProbeAlignment& alignment) {
         axis ? fmt::format(", all turned about the axis ({:.3f}, {:.3f}, {:.3f})", axis->x, axis->y,
                            axis->z)
              : "";
-    warn(fmt::format("ambiguous: {} other rotation{} as well, such as {}{}", count,
-                     count == 1 ? " fits" : "s fit", text(alignment.others[0].rotation.angles()),
-                     where));
+    warn("ambiguous: {} other rotation{} as well, such as {}{}", count,
+         count == 1 ? " fits" : "s fit", text(alignment.others[0].rotation.angles()), where);
   }
   if (alignment.correlation < kPoor)
-    warn(fmt::format("the correlation is {:.2g}: the probes may be of different places",
-                     alignment.correlation));
+    warn("the correlation is {:.2g}: the probes may be of different places", alignment.correlation);
 }
 
 Image loadAligned(const std::string& file, const std::string& mapping, const char* option) {
@@ -98,10 +91,7 @@ void run(const ProbeAlignArguments& arguments) {
   std::optional<BusyLine> busy("aligning");
   const ProbeAlignment alignment = alignProbes(first, second, arguments.first, arguments.second);
   busy.reset();
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(arguments, alignment), 2));
-  else
-    print(alignment);
+  arguments.json ? printJson(toJson(arguments, alignment)) : print(alignment);
   std::fflush(stdout);
   warnOfDoubt(alignment);
   if (!arguments.out.empty())
@@ -112,20 +102,17 @@ void run(const ProbeAlignArguments& arguments) {
 }  // namespace
 
 void addProbeAlignCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeAlignArguments>();
-  Command command = probe.addCommand(
-      "align", "Find the rotation that makes one probe of a place agree with another.");
-  command.addOption("A", arguments->first, "a probe").required();
-  command.addOption("B", arguments->second, "the probe to turn").required();
-  command.addOption("-o,--output", arguments->out, "write B, turned, as a lat-long map");
-  command.addFlag("--json", arguments->json, "print JSON");
-  command.addOption("--mapping-a", arguments->firstMapping, "the mapping of A; auto detects it");
-  command.addOption("--mapping-b", arguments->secondMapping, "the mapping of B; auto detects it");
+  auto [command, a] = probe.addCommand<ProbeAlignArguments>(
+      "align", "Find the rotation that makes one probe of a place agree with another.", run);
+  command.addRequired("A", a.first, "a probe");
+  command.addRequired("B", a.second, "the probe to turn");
+  command.addOption("-o,--output", a.out, "write B, turned, as a lat-long map");
+  command.addFlag("--json", a.json, "print JSON");
+  command.addOption("--mapping-a", a.firstMapping, "the mapping of A; auto detects it");
+  command.addOption("--mapping-b", a.secondMapping, "the mapping of B; auto detects it");
   command.footer(
       "render takes the angles or the quaternion as --probe-rotation of B. The probes may differ "
-      "in "
-      "exposure, white balance, size and noise.\n");
-  command.callback([arguments] { run(*arguments); });
+      "in exposure, white balance, size and noise.\n");
 }
 
 }  // namespace chromeball

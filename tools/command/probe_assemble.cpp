@@ -5,22 +5,19 @@
 #include <algorithm>
 
 #include "assemble_options.h"
-#include "base/json.h"
-#include "base/json_text.h"
-#include "busy_line.h"
+#include "commands.h"
 #include "image/io/write_image.h"
+#include "image_files.h"
+#include "json_values.h"
 #include "messages.h"
 #include "probe/capture/assemble.h"
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
 #include "probe/solid_angle.h"
-#include "probe_commands.h"
-#include "write_probe.h"
+#include "progress_bar.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Report {
   const AssembleArguments& arguments;
@@ -31,23 +28,24 @@ struct Report {
   const AssemblyTarget& target;
 };
 
-Json toJson(const Report& report) {
-  Json views = Json::array();
+JsonValue toJson(const Report& report) {
+  JsonValue views = JsonValue::array();
   for (size_t i = 0; i < report.views.size(); ++i) {
     const AssemblyPhotograph& p = report.photographs[i];
     const ViewMatch& match = report.matches[i];
-    views.push_back({{"file", p.file},
-                     {"circle", {p.circle.centre.x, p.circle.centre.y, p.circle.radius}},
-                     {"circle_support", p.found ? Json(p.found->support) : Json()},
-                     {"circle_standard_error", p.found ? Json(p.found->standardError) : Json()},
-                     {"azimuth", report.views[i].camera().azimuth},
-                     {"elevation", report.views[i].camera().elevation},
-                     {"overlap", match.overlap},
-                     {"correlation", match.correlation},
-                     {"turn", match.turn},
-                     {"turn_found", match.turned},
-                     {"gain", match.gain},
-                     {"gain_found", match.exposed}});
+    views.push_back(
+        {{"file", p.file},
+         {"circle", {p.circle.centre.x, p.circle.centre.y, p.circle.radius}},
+         {"circle_support", p.found ? JsonValue(p.found->support) : JsonValue()},
+         {"circle_standard_error", p.found ? JsonValue(p.found->standardError) : JsonValue()},
+         {"azimuth", report.views[i].camera().azimuth},
+         {"elevation", report.views[i].camera().elevation},
+         {"overlap", match.overlap},
+         {"correlation", match.correlation},
+         {"turn", match.turn},
+         {"turn_found", match.turned},
+         {"gain", match.gain},
+         {"gain_found", match.exposed}});
   }
   return {{"views", views},
           {"blind_share", report.assembly.blindShare},
@@ -105,12 +103,12 @@ void warnOfUpsideDown(const Report& report) {
   const auto looksDown = [](double e) { return e > kSteep; };
   const auto isSteep = [](double e) { return std::fabs(e) > kSteep; };
   if (isFisheye && std::ranges::all_of(photographs, looksDown, elevation)) {
-    warn(fmt::format("{}: the lens looks below the horizon; {}", report.arguments.out, meaning));
+    warn("{}: the lens looks below the horizon; {}", report.arguments.out, meaning);
   } else if (std::ranges::any_of(photographs, isSteep, elevation)) {
     const double ratio = brightnessBelow(report.assembly.latLong);
     if (ratio > kBrightGround)
-      warn(fmt::format("{}: is {:.3g} times as bright below the horizon as above it; {}",
-                       report.arguments.out, ratio, meaning));
+      warn("{}: is {:.3g} times as bright below the horizon as above it; {}", report.arguments.out,
+           ratio, meaning);
   }
 }
 
@@ -121,26 +119,26 @@ void warnOf(const Report& report) {
     const ViewMatch& match = report.matches[i];
     const double inside = shareInside(p.circle, p.image.width, p.image.height);
     if (inside < 0.999)
-      warn(fmt::format("{}: {:.0f}% of its circle is outside the picture, and blind", p.file,
-                       100 * (1 - inside)));
+      warn("{}: {:.0f}% of its circle is outside the picture, and blind", p.file,
+           100 * (1 - inside));
     if (p.found && p.found->standardError > kLargestDoubt)
-      warn(fmt::format(
-          "{}: the outline of the ball is doubtful, by {:.2g} pixels; see --preview, or give "
-          "--circle X,Y,RADIUS",
-          p.file, p.found->standardError));
+      warn(
+          "{}: the outline of the ball is doubtful, by {:.2g} pixels; see --preview, "
+          "or give --circle X,Y,RADIUS",
+          p.file, p.found->standardError);
     if (p.found && p.found->other)
-      warn(fmt::format(
+      warn(
           "{}: {:.1f},{:.1f},{:.1f} may be the outline as well; see --preview, or give --circle "
           "X,Y,RADIUS",
-          p.file, p.found->other->centre.x, p.found->other->centre.y, p.found->other->radius));
+          p.file, p.found->other->centre.x, p.found->other->centre.y, p.found->other->radius);
     if (i == 0) continue;
     if (!report.arguments.keepAzimuth && !match.turned)
       warn(
-          fmt::format("{}: no turn of up to {} degrees matches the photographs before "
-                      "(correlation {:.2f} over {:.0f}% of the sphere); its azimuth is kept",
-                      p.file, kLargestTurn, match.correlation, 100 * match.overlap));
+          "{}: no turn of up to {} degrees matches the photographs before (correlation "
+          "{:.2f} over {:.0f}% of the sphere); its azimuth is kept",
+          p.file, kLargestTurn, match.correlation, 100 * match.overlap);
     if (!report.arguments.keepExposure && !match.exposed)
-      warn(fmt::format("{}: hardly overlaps the photographs before; its exposure is kept", p.file));
+      warn("{}: hardly overlaps the photographs before; its exposure is kept", p.file);
   }
   if (!report.arguments.isFisheye() && report.arguments.reflectivity.empty() &&
       report.arguments.ballIor.empty())
@@ -160,9 +158,9 @@ Image preview(const Report& report) {
   return assemblyPreview(previews, report.assembly);
 }
 
-void run(const AssembleArguments& arguments) {
+void run(const AssembleArguments& arguments, const Command& command) {
   checkFiles(arguments);
-  const std::shared_ptr<const CaptureOptics> optics = parseOptics(arguments);
+  const std::shared_ptr<const CaptureOptics> optics = parseOptics(arguments, command);
   const BlindFill fill = parseFill(arguments.fill);
   const std::vector<AssemblyPhotograph> photographs = loadPhotographs(arguments);
   std::vector<CaptureView> views;
@@ -180,21 +178,17 @@ void run(const AssembleArguments& arguments) {
   const Report report{arguments, photographs, views, matches, assembly, target};
   warnOf(report);
   writeProbe(arguments.out, probe, target.mapping);
-  if (!arguments.preview.empty()) print(writeImage(arguments.preview, preview(report)), false);
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(report), 2));
-  else
-    print(report);
+  if (!arguments.preview.empty()) print(writeImage(arguments.preview, preview(report)));
+  arguments.json ? printJson(toJson(report)) : print(report);
 }
 
 }  // namespace
 
 void addProbeAssembleCommand(Command probe) {
-  const auto arguments = std::make_shared<AssembleArguments>();
-  Command command = probe.addCommand(
-      "assemble", "Make a probe from photographs of a mirror ball, or through a fisheye lens.");
-  addAssembleOptions(command, *arguments);
-  command.callback([arguments] { run(*arguments); });
+  auto [command, a] = probe.addCommand<AssembleArguments>(
+      "assemble", "Make a probe from photographs of a mirror ball, or through a fisheye lens.",
+      run);
+  addAssembleOptions(command, a);
 }
 
 }  // namespace chromeball

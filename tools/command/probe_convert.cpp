@@ -4,18 +4,17 @@
 #include <optional>
 
 #include "base/error.h"
-#include "busy_line.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/convert.h"
 #include "probe/edit.h"
 #include "probe/load.h"
-#include "probe_commands.h"
-#include "rotation_option.h"
-#include "write_probe.h"
+#include "probe_options.h"
+#include "progress_bar.h"
 
 namespace chromeball {
 namespace {
@@ -39,16 +38,15 @@ std::pair<Mapping, ImageSize> target(const ProbeConvertArguments& arguments, con
 
 void warnOfSource(const LoadedProbe& probe, const ProbeConvertArguments& arguments) {
   if (probe.mapping == Mapping::MirrorBall && !arguments.flip)
-    warn(fmt::format(
-        "{}: read as an ideal mirror ball; a photograph of a ball is mirrored and shows "
-        "its camera in the centre: use --flip, or `probe assemble`",
-        arguments.in));
+    warn(
+        "{}: read as an ideal mirror ball; a photograph of a ball is mirrored and "
+        "shows its camera in the centre: use --flip, or `probe assemble`",
+        arguments.in);
   const std::optional<Fisheye> lens = probe.mapping.disc();
   if (!lens) return;
   const double share = lens->solidAngle() / (4 * kPiD);
   if (share < 1 - 1e-9)
-    warn(fmt::format("{}: shows {:.3g}% of the sphere; the rest is black", arguments.in,
-                     100 * share));
+    warn("{}: shows {:.3g}% of the sphere; the rest is black", arguments.in, 100 * share);
 }
 
 void run(const ProbeConvertArguments& arguments) {
@@ -72,25 +70,21 @@ void run(const ProbeConvertArguments& arguments) {
 }  // namespace
 
 void addProbeConvertCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeConvertArguments>();
-  Command command = probe.addCommand("convert", "Resample a probe into another mapping or size.");
-  command.addOption("IN", arguments->in, "the probe's image").required();
-  command.addOption("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
-      .required();
-  command
-      .addOption("--to", arguments->to,
-                 "lat-long, angular, mirror-ball, cube-cross, cube-strip, cube-3x2 or "
-                 "fisheye[:FOV[:PROJECTION]], by default :180:equidistant; or equisolid, "
-                 "orthographic, stereographic")
-      .required();
-  command.addOption("--from", arguments->from, "the mapping of IN; auto detects it");
-  command.addOption("--size", arguments->size, "WIDTHxHEIGHT; else the size that keeps the detail");
-  addRotationOption(command, arguments->rotation);
-  command.addOption("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
-  command.addFlag("--flip", arguments->flip,
+  auto [command, a] = probe.addCommand<ProbeConvertArguments>(
+      "convert", "Resample a probe into another mapping or size.", run);
+  command.addRequired("IN", a.in, "the probe's image");
+  command.addRequired("OUT", a.out, "the image to write: .exr, .hdr, .pfm or .png");
+  command.addRequired("--to", a.to,
+                      "lat-long, angular, mirror-ball, cube-cross, cube-strip, cube-3x2 or "
+                      "fisheye[:FOV[:PROJECTION]], by default :180:equidistant; or equisolid, "
+                      "orthographic, stereographic");
+  command.addOption("--from", a.from, "the mapping of IN; auto detects it");
+  command.addOption("--size", a.size, "WIDTHxHEIGHT; else the size that keeps the detail");
+  addRotationOption(command, a.rotation);
+  command.addOption("--scale", a.scale, "X or R,G,B: multiply all radiance");
+  command.addFlag("--flip", a.flip,
                   "mirror IN left and right first: a photograph of a mirror ball. Its centre then "
                   "shows the camera: with the camera on +Z, turn by --rotation 180");
-  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

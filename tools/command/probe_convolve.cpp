@@ -5,21 +5,20 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "busy_line.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image/io/write_ktx2.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/convert.h"
 #include "probe/convolve.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
 #include "probe/prefiltered_probe.h"
-#include "probe_commands.h"
-#include "rotation_option.h"
-#include "write_probe.h"
+#include "probe_options.h"
+#include "progress_bar.h"
 
 namespace chromeball {
 namespace {
@@ -95,8 +94,7 @@ void writeLevels(const ProbeConvolveArguments& arguments, const Image& latLong) 
   for (const CubeLevel& level : levels)
     fmt::print("{0}x{0}: roughness {1:.4g}\n", level.faces.width, level.roughness);
   if (clipped)
-    warn(fmt::format("{}: {} channels exceed a half float and are clipped at 65504", arguments.out,
-                     clipped));
+    warn("{}: {} channels exceed a half float and are clipped at 65504", arguments.out, clipped);
 }
 
 void run(const ProbeConvolveArguments& arguments) {
@@ -123,30 +121,24 @@ void run(const ProbeConvolveArguments& arguments) {
 }  // namespace
 
 void addProbeConvolveCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeConvolveArguments>();
-  Command command = probe.addCommand(
-      "convolve", "Blur a probe by the lobe of a surface: a prefiltered environment map.");
-  command.addOption("IN", arguments->in, "the probe's image").required();
-  command
-      .addOption("OUT", arguments->out,
-                 "the lat-long map to write: .exr, .hdr, .pfm or .png; or a cube map with levels "
-                 "for the roughnesses of GGX: .ktx2")
-      .required();
-  command.addOption("--kernel", arguments->kernel,
+  auto [command, a] = probe.addCommand<ProbeConvolveArguments>(
+      "convolve", "Blur a probe by the lobe of a surface: a prefiltered environment map.", run);
+  command.addRequired("IN", a.in, "the probe's image");
+  command.addRequired("OUT", a.out,
+                      "the lat-long map to write: .exr, .hdr, .pfm or .png; or a cube map with "
+                      "levels for the roughnesses of GGX: .ktx2");
+  command.addOption("--kernel", a.kernel,
                     "diffuse (irradiance / pi), phong:EXPONENT or ggx:ROUGHNESS");
-  command.addOption("--size", arguments->size,
+  command.addOption("--size", a.size,
                     "WIDTHxHEIGHT; else the probe's, as lat-long. Of a face of a .ktx2: 256x256");
-  command.addOption("--from-size", arguments->fromSize,
+  command.addOption("--from-size", a.fromSize,
                     "reduce the probe to WIDTHxHEIGHT first: faster, and less exact");
-  command
-      .addOption("--method", arguments->method,
-                 "exact, or sh: spherical harmonics to order 2, may be negative")
-      .showsDefault();
-  command.addOption("--mips", arguments->mips,
+  command.addWithDefault("--method", a.method,
+                         "exact, or sh: spherical harmonics to order 2, may be negative");
+  command.addOption("--mips", a.mips,
                     "the roughness of the levels of a .ktx2: khronos (linear), or filament");
-  addRotationOption(command, arguments->rotation);
-  command.addOption("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
-  command.callback([arguments] { run(*arguments); });
+  addRotationOption(command, a.rotation);
+  command.addOption("--mapping", a.mapping, "the mapping of IN; auto detects it");
 }
 
 }  // namespace chromeball

@@ -6,18 +6,17 @@
 #include <optional>
 
 #include "base/error.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/convert.h"
 #include "probe/edit.h"
 #include "probe/load.h"
 #include "probe/solid_angle.h"
-#include "probe_commands.h"
-#include "rotation_option.h"
-#include "write_probe.h"
+#include "probe_options.h"
 
 namespace chromeball {
 namespace {
@@ -121,16 +120,15 @@ void apply(const Edits& edits, const std::string& file, Image& latLong) {
                       edits.rotation);
   if (edits.nadirRadius > 0 && fillNadir(latLong, edits.nadirRadius) == 0)
     throwInput(
-        "--fill-nadir: no texel's centre is within {} degrees of straight down: the rows "
-        "of {} are {:.3g} degrees high",
+        "--fill-nadir: no texel's centre is within {} degrees of straight down: the rows of {} are "
+        "{:.3g} degrees high",
         edits.nadirRadius, file, 180. / latLong.height);
   if (edits.isMirrored) mirrorAtHorizon(latLong);
   if (edits.ground) replaceBelowHorizon(latLong, *edits.ground);
   for (const Region& region : edits.regions)
     if (multiplyRegion(latLong, region.centre, region.radius, region.gain) == 0)
       throwInput(
-          "--region: no texel's centre is within {}: the texels of {} are {:.3g} degrees "
-          "high",
+          "--region: no texel's centre is within {}: the texels of {} are {:.3g} degrees high",
           region.text, file, 180. / latLong.height);
   if (edits.scale) multiply(latLong, *edits.scale);
   if (!std::all_of(latLong.texels.begin(), latLong.texels.end(),
@@ -151,34 +149,31 @@ void run(const ProbeEditArguments& arguments) {
 }  // namespace
 
 void addProbeEditCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeEditArguments>();
-  Command command = probe.addCommand(
+  auto [command, a] = probe.addCommand<ProbeEditArguments>(
       "edit",
       "Change the light of a probe, and write it as a lat-long map. Edits are done in the order of "
-      "the options below; angles are in degrees.");
-  command.addOption("IN", arguments->in, "the probe's image").required();
-  command.addOption("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
-      .required();
-  addRotationOption(command, arguments->rotation, "; before all other edits");
-  command.addOption("--fill-nadir", arguments->fillNadir,
+      "the options below; angles are in degrees.",
+      run);
+  command.addRequired("IN", a.in, "the probe's image");
+  command.addRequired("OUT", a.out, "the image to write: .exr, .hdr, .pfm or .png");
+  addRotationOption(command, a.rotation, "; before all other edits");
+  command.addOption("--fill-nadir", a.fillNadir,
                     "RADIUS: fill the disc straight below smoothly from its rim (a tripod)");
-  command.addOption("--below-horizon", arguments->belowHorizon,
+  command.addOption("--below-horizon", a.belowHorizon,
                     "replace the lower half: black, mirror (the upper half's), or radiance R,G,B");
   command
-      .addOption("--region", arguments->regions,
+      .addOption("--region", a.regions,
                  "AZIMUTH,ELEVATION,RADIUS: a disc to multiply by --gain; may be given several "
                  "times. Azimuth is from -Z, the map's centre, counter-clockwise seen from above")
       .onePerName();
-  command.addOption("--gain", arguments->gains, "X or R,G,B, one for each --region, in order")
-      .onePerName();
-  command.addOption("--scale", arguments->scale, "X or R,G,B: multiply all radiance");
-  command.addOption("--clip", arguments->clip, "X: lower the channels above X to X");
+  command.addOption("--gain", a.gains, "X or R,G,B, one for each --region, in order").onePerName();
+  command.addOption("--scale", a.scale, "X or R,G,B: multiply all radiance");
+  command.addOption("--clip", a.clip, "X: lower the channels above X to X");
   command
-      .addOption("--clip-stops", arguments->clipStops,
+      .addOption("--clip-stops", a.clipStops,
                  "N: the same at 2^N times the mean luminance over the sphere")
       .excludes("--clip");
-  command.addOption("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
-  command.callback([arguments] { run(*arguments); });
+  command.addOption("--mapping", a.mapping, "the mapping of IN; auto detects it");
 }
 
 }  // namespace chromeball

@@ -3,23 +3,25 @@
 #include <cstdio>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
+#include "commands.h"
 #include "json_values.h"
 #include "messages.h"
 #include "probe/info.h"
 #include "probe/load.h"
 #include "probe/solid_angle.h"
-#include "probe_commands.h"
-#include "rotation_option.h"
+#include "probe_options.h"
 
 namespace chromeball {
 namespace {
 
-using Json = nlohmann::ordered_json;
+struct ProbeInfoArguments {
+  std::string file, mapping = "auto";
+  Rotation rotation;
+  bool json = false, mappingReport = false;
+};
 
-Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& file) {
-  Json suns = Json::array(), shares = Json::array();
+JsonValue toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& file) {
+  JsonValue suns = JsonValue::array(), shares = JsonValue::array();
   for (const Sun& sun : info.suns)
     suns.push_back({{"direction", vectorToJson(sun.direction)},
                     {"irradiance", vectorToJson(sun.irradiance)},
@@ -40,7 +42,7 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
           {"share_at_max", probe.fractionAtMaximum},
           {"dynamic_range", info.dynamicRange},
           {"max_over_mean", info.maxOverMean},
-          {"robust_range", std::isfinite(info.robustRange) ? Json(info.robustRange) : Json()},
+          {"robust_range", orNull(info.robustRange)},
           {"plateau",
            {{"texels", info.plateau.texels},
             {"solid_angle", info.plateau.solidAngle},
@@ -50,8 +52,8 @@ Json toJson(const LoadedProbe& probe, const ProbeInfo& info, const std::string& 
            {{"nan", probe.repair.nan},
             {"infinite", probe.repair.infinite},
             {"negative", probe.repair.negative},
-            {"first", probe.repair.total() > 0 ? Json{probe.repair.firstX, probe.repair.firstY}
-                                               : Json(nullptr)}}},
+            {"first", probe.repair.total() > 0 ? JsonValue{probe.repair.firstX, probe.repair.firstY}
+                                               : JsonValue(nullptr)}}},
           {"mean_radiance", vectorToJson(info.meanRadiance)},
           {"brightest",
            {{"direction", vectorToJson(info.brightestDirection)},
@@ -65,7 +67,7 @@ std::string triple(const Vector& v) {
   return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z);
 }
 
-Json toJson(const TexelSolidAngles& angles) {
+JsonValue toJson(const TexelSolidAngles& angles) {
   return {{"min_solid_angle", angles.min},
           {"max_solid_angle", angles.max},
           {"max_over_min", angles.max / angles.min},
@@ -126,44 +128,39 @@ ProbeInfo turned(ProbeInfo info, const Rotation& rotation) {
   return info;
 }
 
+void run(const ProbeInfoArguments& arguments) {
+  const LoadedProbe probe = loadProbe(arguments.file, arguments.mapping, "--mapping");
+  print(probe.messages);
+  for (const std::string& warning : lightWarnings(probe, arguments.file)) warn(warning);
+  const ProbeInfo info = turned(probeInfo(probe.latLong), arguments.rotation);
+  const auto angles = [&] {
+    return texelSolidAngles(probe.mapping, {probe.fileWidth, probe.fileHeight});
+  };
+  if (arguments.json) {
+    JsonValue json = toJson(probe, info, arguments.file);
+    if (arguments.mappingReport) json["mapping_report"] = toJson(angles());
+    printJson(json);
+  } else {
+    print(probe, info);
+    if (arguments.mappingReport) print(probe, angles());
+  }
+}
+
 }  // namespace
 
-void addProbeInfoCommand(Command probeCommand) {
-  struct Arguments {
-    std::string file, mapping = "auto";
-    Rotation rotation;
-    bool json = false, mappingReport = false;
-  };
-  const auto arguments = std::make_shared<Arguments>();
-  Command command =
-      probeCommand.addCommand("info", "Show the mapping and the statistics of a probe.");
-  command.addOption("FILE", arguments->file, "the probe's image").required();
-  command.addOption("--mapping", arguments->mapping,
+void addProbeInfoCommand(Command probe) {
+  auto [command, a] = probe.addCommand<ProbeInfoArguments>(
+      "info", "Show the mapping and the statistics of a probe.", run);
+  command.addRequired("FILE", a.file, "the probe's image");
+  command.addOption("--mapping", a.mapping,
                     "auto, lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2");
-  addRotationOption(command, arguments->rotation, ", and with it the directions");
-  command.addFlag("--json", arguments->json, "print JSON");
+  addRotationOption(command, a.rotation, ", and with it the directions");
+  command.addFlag("--json", a.json, "print JSON");
   command.footer(
       "robust_range of the JSON is null if it is infinite, as more than 1% of the sphere is black, "
       "and 0 if less than 1% is lit.\n");
-  command.addFlag("--mapping-report", arguments->mappingReport,
+  command.addFlag("--mapping-report", a.mappingReport,
                   "also show the solid angles of the file's texels");
-  command.callback([arguments] {
-    const LoadedProbe probe = loadProbe(arguments->file, arguments->mapping, "--mapping");
-    print(probe.messages, false);
-    for (const std::string& warning : lightWarnings(probe, arguments->file)) warn(warning);
-    const ProbeInfo info = turned(probeInfo(probe.latLong), arguments->rotation);
-    const auto angles = [&] {
-      return texelSolidAngles(probe.mapping, {probe.fileWidth, probe.fileHeight});
-    };
-    if (arguments->json) {
-      Json json = toJson(probe, info, arguments->file);
-      if (arguments->mappingReport) json["mapping_report"] = toJson(angles());
-      fmt::print("{}\n", jsonText(json, 2));
-    } else {
-      print(probe, info);
-      if (arguments->mappingReport) print(probe, angles());
-    }
-  });
 }
 
 }  // namespace chromeball

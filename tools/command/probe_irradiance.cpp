@@ -4,17 +4,16 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "busy_line.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
-#include "probe_commands.h"
-#include "rotation_option.h"
-#include "write_probe.h"
+#include "probe_options.h"
+#include "progress_bar.h"
 
 namespace chromeball {
 namespace {
@@ -49,20 +48,16 @@ void run(const ProbeIrradianceArguments& arguments) {
 }  // namespace
 
 void addProbeIrradianceCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeIrradianceArguments>();
-  Command command = probe.addCommand(
-      "irradiance", "The irradiance on surfaces of every orientation, as a lat-long map.");
-  command.addOption("IN", arguments->in, "the probe's image").required();
-  command.addOption("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
-      .required();
-  command.addOption("--size", arguments->size, "WIDTHxHEIGHT; else the probe's, as lat-long");
-  command
-      .addOption("--method", arguments->method,
-                 "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative")
-      .showsDefault();
-  addRotationOption(command, arguments->rotation);
-  command.addOption("--mapping", arguments->mapping, "the mapping of IN; auto detects it");
-  command.callback([arguments] { run(*arguments); });
+  auto [command, a] = probe.addCommand<ProbeIrradianceArguments>(
+      "irradiance", "The irradiance on surfaces of every orientation, as a lat-long map.", run);
+  command.addRequired("IN", a.in, "the probe's image");
+  command.addRequired("OUT", a.out, "the image to write: .exr, .hdr, .pfm or .png");
+  command.addOption("--size", a.size, "WIDTHxHEIGHT; else the probe's, as lat-long");
+  command.addWithDefault(
+      "--method", a.method,
+      "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative");
+  addRotationOption(command, a.rotation);
+  command.addOption("--mapping", a.mapping, "the mapping of IN; auto detects it");
 }
 
 }  // namespace chromeball

@@ -1,29 +1,109 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe merge 1.jpg 2.jpg ... -o hdr.exr
-
 #include "base/error.h"
 #include "base/file.h"
-#include "base/json.h"
-#include "base/json_text.h"
+#include "command.h"
+#include "commands.h"
+#include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "json_values.h"
 #include "messages.h"
 #include "probe/capture/merge_photographs.h"
-#include "probe_commands.h"
-#include "probe_merge_options.h"
 
 namespace chromeball {
 namespace {
 
-using Json = nlohmann::ordered_json;
+struct ProbeMergeArguments {
+  std::vector<std::string> files, ratios, filters, flatFields, calibration;
+  std::string output, exposures, apertures, response, responseOutput, smoothness, white;
+  bool unaligned = false, resizes = false, json = false;
+};
 
-Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
-Json orNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+// "0.5" or "1/8", above 0.
+double parsePositive(std::string_view text, std::string_view location) {
+  const size_t slash = text.find('/');
+  double number = parseNumbers(text.substr(0, slash), 1, location).front();
+  if (slash != std::string_view::npos)
+    number /= parseNumbers(text.substr(slash + 1), 1, location).front();
+  if (!(number > 0) || !std::isfinite(number))
+    throwInput("{}: `{}` should be above 0", location, text);
+  return number;
+}
 
-Json toJson(const PhotographSeries& series, const MergedPhotographs& merged) {
-  Json exposures = Json::array(), agreements = Json::array();
+// "1/10,1/40": empty if there is no text.
+std::vector<double> parsePositives(std::string_view text, std::string_view location) {
+  std::vector<double> numbers;
+  if (text.empty()) return numbers;
+  for (size_t from = 0; from <= text.size();) {
+    const size_t comma = std::min(text.find(',', from), text.size());
+    numbers.push_back(parsePositive(text.substr(from, comma - from), location));
+    from = comma + 1;
+  }
+  return numbers;
+}
+
+// The texts before and after the first `separator`. Throws InputError with `form` if it is missing.
+std::pair<std::string, std::string> divided(const std::string& text, char separator,
+                                            std::string_view location, std::string_view form) {
+  const size_t at = text.find(separator);
+  if (at == std::string::npos) throwInput("{}: `{}` should be {}", location, text, form);
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+ApertureRatio parseRatio(const std::string& text) {
+  constexpr const char *kOption = "--aperture-ratio", *kForm = "A:B=X, as in 4:16=16.63";
+  const auto [apertures, ratio] = divided(text, '=', kOption, kForm);
+  const auto [from, to] = divided(apertures, ':', kOption, kForm);
+  return {parsePositive(from, kOption), parsePositive(to, kOption), parsePositive(ratio, kOption)};
+}
+
+PhotographSeries::Filter parseFilter(const std::string& text, size_t photographs) {
+  constexpr const char* kOption = "--filter";
+  const auto [index, transmission] = divided(text, '=', kOption, "K=R,G,B or K=X");
+  const double k = parseNumbers(index, 1, kOption).front();
+  if (!(k >= 1 && k <= double(photographs)) || k != std::floor(k))
+    throwInput("--filter: `{}` should be the number of a photograph, 1 to {}", index, photographs);
+  std::vector<double> c = parsePositives(transmission, kOption);
+  if (c.size() == 1) c.resize(3, c.front());
+  if (c.size() != 3) throwInput("--filter: `{}` should be one number or three", transmission);
+  return {size_t(k) - 1, {c[0], c[1], c[2]}};
+}
+
+// "F.exr" or "4=F.exr"; a name may contain `=` if no number is before it.
+PhotographSeries::FlatField parseFlatField(const std::string& text) {
+  const size_t at = text.find('=');
+  if (at == std::string::npos || text.substr(0, at).find_first_not_of("0123456789.") < at)
+    return {std::nullopt, text};
+  return {parsePositive(text.substr(0, at), "--flat-field"), text.substr(at + 1)};
+}
+
+// Converts the options, without looking at files.
+PhotographSeries seriesOf(const ProbeMergeArguments& a) {
+  PhotographSeries series;
+  series.files = a.files;
+  series.times = parsePositives(a.exposures, "--exposures");
+  series.apertures = parsePositives(a.apertures, "--apertures");
+  for (const std::string& text : a.ratios) series.apertureRatios.push_back(parseRatio(text));
+  for (const std::string& text : a.filters)
+    series.filters.push_back(parseFilter(text, a.files.size()));
+  for (const std::string& text : a.flatFields) series.flatFields.push_back(parseFlatField(text));
+  series.response = a.response;
+  if (!a.smoothness.empty() && a.response != "solve")
+    throwInput("--smoothness: has no effect without --response solve; leave it out");
+  if (!a.smoothness.empty()) series.smoothness = parsePositive(a.smoothness, "--smoothness");
+  constexpr double kSmoothest = 1e6;  // more leaves a straight line, and rounding errors
+  if (!(series.smoothness <= kSmoothest))
+    throwInput("--smoothness: `{}` should be at most {:g}", a.smoothness, kSmoothest);
+  if (!a.white.empty()) series.white = float(parsePositive(a.white, "--white"));
+  series.checkAlignment = !a.unaligned;
+  series.resizes = a.resizes;
+  return series;
+}
+
+JsonValue toJson(const PhotographSeries& series, const MergedPhotographs& merged) {
+  JsonValue exposures = JsonValue::array(), agreements = JsonValue::array();
   for (size_t i = 0; i < series.files.size(); ++i)
     exposures.push_back({{"file", series.files[i]},
                          {"time", merged.settings[i].time},
@@ -99,10 +179,10 @@ Metadata metadataOf(const MergedPhotographs& merged) {
   return {{kToRec709, matrix}};
 }
 
-void merge(const MergeArguments& arguments) {
+void merge(const ProbeMergeArguments& arguments) {
   if (arguments.files.empty()) throwInput("probe merge: give the photographs to merge");
   if (arguments.output.empty()) throwInput("probe merge: give -o, the image to write");
-  const PhotographSeries series = arguments.series();
+  const PhotographSeries series = seriesOf(arguments);
   checkWritable(arguments.output);
   if (lowerExtension(arguments.output) == ".png")
     throwInput("{}: a .png cannot hold the range; give an .exr, .hdr or .pfm", arguments.output);
@@ -113,18 +193,14 @@ void merge(const MergeArguments& arguments) {
   checkDistinct({arguments.output, arguments.responseOutput}, inputs);
 
   MergedPhotographs merged = mergePhotographs(series);
-  print(merged.messages, false);
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(series, merged), 2));
-  else
-    print(series, merged);
+  print(merged.messages);
+  arguments.json ? printJson(toJson(series, merged)) : print(series, merged);
   if (!arguments.responseOutput.empty()) merged.response.write(arguments.responseOutput);
   print(writeImage(arguments.output, OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
                                                   {"clipped", "", std::move(merged.image.clipped)}},
                                                  metadataOf(merged),
                                                  {},
-                                                 {}}),
-        false);
+                                                 {}}));
 }
 
 glm::dmat3 photographsToRec709(const ImageFile& file, const std::string& path) {
@@ -154,9 +230,14 @@ View readView(const std::string& path) {
   return view;
 }
 
-void calibrate(const MergeArguments& arguments) {
+void calibrate(const ProbeMergeArguments& arguments, const Command& command) {
   constexpr double kTolerance = 0.02;
-  arguments.checkCalibration();
+  if (!arguments.files.empty() || !arguments.output.empty())
+    throwInput("--calibrate-filter: prints a transmission; give no photographs and no -o");
+  command.refuse(
+      {"--exposures", "--apertures", "--aperture-ratio", "--filter", "--flat-field", "--response",
+       "--write-response", "--smoothness", "--white", "--resize", "--unaligned"},
+      "has no effect with --calibrate-filter; leave it out");
   const auto [with, clippedWith, space] = readView(arguments.calibration[0]);
   const auto [without, clippedWithout, otherSpace] = readView(arguments.calibration[1]);
   if (space != otherSpace)
@@ -173,34 +254,72 @@ void calibrate(const MergeArguments& arguments) {
   for (int c = 0; c < 3; ++c)
     if (!(std::abs(filter.median[c] / t[c] - 1) <= kTolerance)) {
       warn(
-          fmt::format("the median of the pixels' ratios, {:.4g} {:.4g} {:.4g}, differs from that "
-                      "of their sums: is the light or the scene another, or dark noise strong?",
-                      filter.median.x, filter.median.y, filter.median.z));
+          "the median of the pixels' ratios, {:.4g} {:.4g} {:.4g}, differs from that "
+          "of their sums: is the light or the scene another, or dark noise strong?",
+          filter.median.x, filter.median.y, filter.median.z);
       break;
     }
   if (arguments.json)
-    fmt::print("{}\n", jsonText(Json{{"transmission", vectorToJson(t)},
-                                     {"median", vectorToJson(filter.median)},
-                                     {"pixels", filter.pixels}},
-                                2));
+    printJson(JsonValue{{"transmission", vectorToJson(t)},
+                        {"median", vectorToJson(filter.median)},
+                        {"pixels", filter.pixels}});
   else
     fmt::print("transmission    {:.5g},{:.5g},{:.5g} of {} pixels\n", t.x, t.y, t.z, filter.pixels);
+}
+
+void run(const ProbeMergeArguments& arguments, const Command& command) {
+  arguments.calibration.empty() ? merge(arguments) : calibrate(arguments, command);
 }
 
 }  // namespace
 
 void addProbeMergeCommand(Command probe) {
-  const auto arguments = std::make_shared<MergeArguments>();
-  Command command = probe.addCommand(
+  auto [command, a] = probe.addCommand<ProbeMergeArguments>(
       "merge",
-      "Merge photographs of one view that differ in exposure into an image of high dynamic range.");
-  arguments->addTo(command);
-  command.callback([arguments] {
-    if (arguments->calibration.empty())
-      merge(*arguments);
-    else
-      calibrate(*arguments);
-  });
+      "Merge photographs of one view that differ in exposure into an image of high dynamic range.",
+      run);
+  command.addOption("PHOTOGRAPHS", a.files,
+                    "photographs of one view, of one size: JPEG, PNG, TIFF, .exr, .hdr or .pfm");
+  command.addOption("-o,--output", a.output,
+                    "the image to write: .exr (with the layer `clipped`), .hdr or .pfm");
+  command.addOption("--exposures", a.exposures,
+                    "exposure times in seconds, one for each photograph, as in 1/10,1/40; in place "
+                    "of EXIF's time, aperture and ISO");
+  command.addOption("--apertures", a.apertures,
+                    "f-numbers, one for each photograph, in place of EXIF's");
+  command
+      .addOption("--aperture-ratio", a.ratios,
+                 "A:B=X: f/A lets X times as much light pass as f/B, measured; else (B/A)^2")
+      .onePerName();
+  command
+      .addOption("--filter", a.filters,
+                 "K=R,G,B: the K-th photograph was taken through a filter of this transmission")
+      .onePerName();
+  command
+      .addOption("--flat-field", a.flatFields,
+                 "F.exr, or N=F.exr for the photographs at f/N: divide by it (`image flat-field`)")
+      .onePerName();
+  command.addOption(
+      "--response", a.response,
+      "linear, srgb, solve or a file of --write-response; without it srgb for 8 bits, else linear");
+  command.addOption("--write-response", a.responseOutput,
+                    "the response as text: 256 levels and their exposures");
+  command.addOption(
+      "--smoothness", a.smoothness,
+      fmt::format("of the solved response, default {:g}", PhotographSeries{}.smoothness));
+  command.addOption("--white", a.white,
+                    "where floats saturate; without it 1, or the largest number if that is higher. "
+                    "The result has the scale of the files");
+  command.addFlag("--resize", a.resizes,
+                  "accept photographs of several sizes, each cropped to the same ball: resample "
+                  "them to the smallest");
+  command.addFlag("--unaligned", a.unaligned, "accept photographs that seem shifted");
+  command
+      .addOption("--calibrate-filter", a.calibration,
+                 "WITH WITHOUT: instead, print the transmission of a filter from two merged images "
+                 "(.exr, which keeps the photographs' primaries)")
+      .words(2);
+  command.addFlag("--json", a.json, "print JSON");
 }
 
 }  // namespace chromeball

@@ -4,12 +4,12 @@
 #include <optional>
 
 #include "base/error.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/load.h"
-#include "probe_commands.h"
 #include "study/report/row_distribution.h"
 #include "study/report/row_plot.h"
 
@@ -70,23 +70,21 @@ void run(const ProbePlotArguments& arguments) {
 }  // namespace
 
 void addProbePlotCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbePlotArguments>();
-  Command command = probe.addCommand(
-      "plot", "Plot how importance sampling draws directions from one row of a probe.");
-  command.addOption("PROBE", arguments->file, "the probe's image").required();
-  command.addOption("OUT", arguments->out, "the plot to write: .svg").required();
-  command.addOption("--row", arguments->row,
+  auto [command, a] = probe.addCommand<ProbePlotArguments>(
+      "plot", "Plot how importance sampling draws directions from one row of a probe.", run);
+  command.addRequired("PROBE", a.file, "the probe's image");
+  command.addRequired("OUT", a.out, "the plot to write: .svg");
+  command.addOption("--row", a.row,
                     "row of texels of the lat-long map, from 0 at the top; else the brightest");
-  command.addOption("--elevation", arguments->elevation, "or the row at this elevation, degrees")
+  command.addOption("--elevation", a.elevation, "or the row at this elevation, degrees")
       .excludes("--row");
-  command.addOption("--azimuth", arguments->azimuth,
+  command.addOption("--azimuth", a.azimuth,
                     "A,B: the part to plot, in degrees from -Z, the map's centre, "
                     "counter-clockwise seen from above; else all of the row");
-  command.addOption("--samples", arguments->samples, "number of samples to draw").showsDefault();
-  command.addFlag("--compensated", arguments->compensated,
+  command.addWithDefault("--samples", a.samples, "number of samples to draw");
+  command.addFlag("--compensated", a.compensated,
                   "sample what is brighter than the mean, as renders with MIS do");
-  command.addOption("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
-  command.callback([arguments] { run(*arguments); });
+  command.addOption("--mapping", a.mapping, "the mapping of PROBE; auto detects it");
 }
 
 }  // namespace chromeball

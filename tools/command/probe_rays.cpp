@@ -1,25 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe rays PROBE
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
+#include "commands.h"
 #include "front/arguments.h"
-#include "input_image.h"
+#include "image_files.h"
+#include "json_values.h"
 #include "math/icosphere.h"
 #include "messages.h"
 #include "probe/convert.h"
 #include "probe/load.h"
 #include "probe/random_rays.h"
-#include "probe_commands.h"
-#include "rotation_option.h"
-#include "write_probe.h"
+#include "probe_options.h"
 
 namespace chromeball {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ProbeRaysArguments {
   std::string file, mapping = "auto", size;
@@ -28,90 +26,82 @@ struct ProbeRaysArguments {
   bool json = false;
 };
 
+constexpr const char* kRayNormals[] = {"upward", "median", "max"};
+
 struct Sampling {
   const char* name;
-  double RayVariance::*variance;
-};
-constexpr Sampling kSamplings[] = {{"uniform", &RayVariance::uniform},
-                                   {"cosine", &RayVariance::cosine},
-                                   {"luminance", &RayVariance::luminance}};
-
-// Relative variances of one sampling.
-struct Summary {
-  double upward, median, max;
+  // Relative ones for each of kRayNormals, if it receives light.
+  std::array<std::optional<double>, 3> variances;
 };
 
-struct Normals {
-  RayVariance upward;
-  std::vector<RayVariance> lit;  // of the icosphere's, those with light
-  size_t count = 0;
+struct RayReport {
+  size_t normals, unlit;
+  std::vector<Sampling> samplings;
+};
 
-  Normals(const Image& latLong, const Rotation& rotation) {
-    constexpr int kSubdivisions = 3;  // 1280 normals
-    std::vector<vec3> normals = icosphereNormals(kSubdivisions);
-    count = normals.size();
-    normals.push_back(rotation.back(vec3(0, 1, 0)));
-    lit = rayVariances(latLong, normals);
-    upward = lit.back();
-    lit.pop_back();
-    std::erase_if(lit, [](const RayVariance& v) { return v.irradiance == 0; });
+RayReport reportOf(const Image& latLong, const Rotation& rotation) {
+  constexpr int kSubdivisions = 3;  // 1280 normals
+  std::vector<vec3> normals = icosphereNormals(kSubdivisions);
+  const size_t count = normals.size();
+  normals.push_back(rotation.back(vec3(0, 1, 0)));
+  std::vector<RayVariance> lit = rayVariances(latLong, normals);
+  const RayVariance upward = lit.back();
+  lit.pop_back();
+  std::erase_if(lit, [](const RayVariance& v) { return v.irradiance == 0; });
+  RayReport report{count, count - lit.size(), {}};
+  for (const auto& [name, variance] :
+       {std::pair("uniform", &RayVariance::uniform), std::pair("cosine", &RayVariance::cosine),
+        std::pair("luminance", &RayVariance::luminance)}) {
+    Sampling sampling{name, {}};
+    if (upward.irradiance > 0) sampling.variances[0] = upward.*variance;
+    if (!lit.empty()) {
+      std::vector<double> all;
+      for (const RayVariance& v : lit) all.push_back(v.*variance);
+      const auto middle = all.begin() + ptrdiff_t(all.size() / 2);
+      std::nth_element(all.begin(), middle, all.end());
+      sampling.variances[1] = *middle;
+      sampling.variances[2] = *std::ranges::max_element(all);
+    }
+    report.samplings.push_back(sampling);
   }
-
-  // There is at least one lit normal.
-  Summary summary(const Sampling& sampling) const {
-    std::vector<double> all;
-    for (const RayVariance& v : lit) all.push_back(v.*sampling.variance);
-    const auto middle = all.begin() + ptrdiff_t(all.size() / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    return {upward.*sampling.variance, *middle, *std::max_element(all.begin(), all.end())};
-  }
-};
-
-// A whole number in JSON where that has one.
-Json countOf(double rays) {
-  constexpr double kLargest = 9e18;
-  return rays < kLargest ? Json(uint64_t(rays)) : Json(rays);
+  return report;
 }
 
-Json toJson(const ProbeRaysArguments& arguments, const Normals& normals) {
-  Json rays, variances;
-  for (const Sampling& sampling : kSamplings) {
-    Json raysHere, variancesHere;
-    const auto add = [&](const char* normal, double variance, bool isLit) {
-      raysHere[normal] = isLit ? countOf(raysForError(variance, arguments.error)) : Json();
-      variancesHere[normal] = isLit ? Json(variance) : Json();
-    };
-    const bool isLit = !normals.lit.empty();
-    const Summary summary = isLit ? normals.summary(sampling) : Summary{};
-    add("upward", summary.upward, normals.upward.irradiance > 0);
-    add("median", summary.median, isLit);
-    add("max", summary.max, isLit);
-    rays[sampling.name] = raysHere;
-    variances[sampling.name] = variancesHere;
-  }
+// A whole number in JSON where that has one.
+JsonValue countOf(double rays) {
+  constexpr double kLargest = 9e18;
+  return rays < kLargest ? JsonValue(uint64_t(rays)) : JsonValue(rays);
+}
+
+JsonValue toJson(const ProbeRaysArguments& arguments, const RayReport& report) {
+  JsonValue rays, variances;
+  for (const auto& [name, ofNormals] : report.samplings)
+    for (size_t i = 0; i < ofNormals.size(); ++i) {
+      const std::optional<double>& variance = ofNormals[i];
+      rays[name][kRayNormals[i]] =
+          variance ? countOf(raysForError(*variance, arguments.error)) : JsonValue();
+      variances[name][kRayNormals[i]] = orNull(variance);
+    }
   return {{"file", arguments.file},
           {"error", arguments.error},
-          {"normals", normals.count},
-          {"unlit_normals", normals.count - normals.lit.size()},
+          {"normals", report.normals},
+          {"unlit_normals", report.unlit},
           {"rays", rays},
           {"relative_variance", variances}};
 }
 
-void print(const ProbeRaysArguments& arguments, const Normals& normals) {
+void print(const ProbeRaysArguments& arguments, const RayReport& report) {
+  const auto rays = [&](const std::optional<double>& variance) {
+    return variance ? fmt::format("{:.15g}", raysForError(*variance, arguments.error)) : "no light";
+  };
   fmt::print("rays for an error of {:.4g}% of the irradiance, unoccluded\n", 100 * arguments.error);
   fmt::print("{:<10} {:>14} {:>14} {:>14}\n", "sampling", "upward", "median", "max");
-  for (const Sampling& sampling : kSamplings) {
-    const auto rays = [&](double variance, bool isLit) {
-      return isLit ? fmt::format("{:.15g}", raysForError(variance, arguments.error)) : "no light";
-    };
-    const bool isLit = !normals.lit.empty();
-    const Summary summary = isLit ? normals.summary(sampling) : Summary{};
-    fmt::print("{:<10} {:>14} {:>14} {:>14}\n", sampling.name,
-               rays(summary.upward, normals.upward.irradiance > 0), rays(summary.median, isLit),
-               rays(summary.max, isLit));
-  }
-  if (const size_t unlit = normals.count - normals.lit.size())
-    fmt::print("{} of {} normals receive no light and are left out\n", unlit, normals.count);
+  for (const auto& [name, variances] : report.samplings)
+    fmt::print("{:<10} {:>14} {:>14} {:>14}\n", name, rays(variances[0]), rays(variances[1]),
+               rays(variances[2]));
+  if (report.unlit > 0)
+    fmt::print("{} of {} normals receive no light and are left out\n", report.unlit,
+               report.normals);
 }
 
 void run(const ProbeRaysArguments& arguments) {
@@ -125,37 +115,30 @@ void run(const ProbeRaysArguments& arguments) {
           : std::optional(checkedSize(arguments.file, parseSize(arguments.size, "--size")));
   LoadedProbe probe = openProbe(arguments.file, arguments.mapping, "--mapping");
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
-  const Normals normals(probe.latLong, arguments.rotation);
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(arguments, normals), 2));
-  else
-    print(arguments, normals);
+  const RayReport report = reportOf(probe.latLong, arguments.rotation);
+  arguments.json ? printJson(toJson(arguments, report)) : print(arguments, report);
 }
 
 }  // namespace
 
 void addProbeRaysCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeRaysArguments>();
-  Command command = probe.addCommand(
+  auto [command, a] = probe.addCommand<ProbeRaysArguments>(
       "rays",
-      "How many random rays the irradiance of an unoccluded point needs: facing up, and the "
-      "median and the most of 1280 normals.");
-  command.addOption("PROBE", arguments->file, "the probe's image").required();
-  command
-      .addOption("--error", arguments->error,
-                 "the standard error of the luminance to reach, as a fraction")
-      .showsDefault();
-  command.addOption("--size", arguments->size,
-                    "WIDTHxHEIGHT: reduce the probe to this lat-long map first");
-  addRotationOption(command, arguments->rotation);
-  command.addOption("--mapping", arguments->mapping, "the mapping of PROBE; auto detects it");
-  command.addFlag("--json", arguments->json, "print JSON");
+      "How many random rays the irradiance of an unoccluded point needs: facing up, and the median "
+      "and the most of 1280 normals.",
+      run);
+  command.addRequired("PROBE", a.file, "the probe's image");
+  command.addWithDefault("--error", a.error,
+                         "the standard error of the luminance to reach, as a fraction");
+  command.addOption("--size", a.size, "WIDTHxHEIGHT: reduce the probe to this lat-long map first");
+  addRotationOption(command, a.rotation);
+  command.addOption("--mapping", a.mapping, "the mapping of PROBE; auto detects it");
+  command.addFlag("--json", a.json, "print JSON");
   command.footer(
       "Samplings:\n"
       "  uniform      directions uniform over the hemisphere\n"
       "  cosine       pdf proportional to the cosine\n"
       "  luminance    pdf proportional to the probe's luminance, over the whole sphere\n");
-  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -2,19 +2,16 @@
 // chromeball probe reflectivity PHOTO --direct X,Y,W,H --reflected X,Y,W,H
 
 #include "base/error.h"
-#include "base/json.h"
-#include "base/json_text.h"
+#include "commands.h"
 #include "front/arguments.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "json_values.h"
 #include "messages.h"
 #include "probe/capture/reflectivity.h"
-#include "probe_commands.h"
 
 namespace chromeball {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using glm::dvec3;
 
 struct ProbeReflectivityArguments {
@@ -34,8 +31,7 @@ Photograph loadPhotograph(const std::string& file, const std::optional<double>& 
   ImageFile read = openImageFile(file);
   const bool hasIntegers = read.integers;
   if (hasIntegers)
-    warn(fmt::format(
-        "{}: has integer texels: decoded from sRGB, without the response of the camera", file));
+    warn("{}: has integer texels: decoded from sRGB, without the response of the camera", file);
   return {colorOf(std::move(read), file), saturation.value_or(hasIntegers ? kWhite : kLargestHalf)};
 }
 
@@ -71,7 +67,7 @@ PatchMean denominator(const ProbeReflectivityArguments& arguments, const Photogr
   return patchMean(standard.image, rectangle, standard.saturation, "--direct");
 }
 
-Json toJson(const PatchMean& patch) {
+JsonValue toJson(const PatchMean& patch) {
   return {{"mean", vectorToJson(patch.mean)},
           {"standard_error", vectorToJson(patch.standardError)},
           {"pixels", patch.pixels}};
@@ -92,14 +88,14 @@ void run(const ProbeReflectivityArguments& arguments) {
   if (std::max({result.value.x, result.value.y, result.value.z}) > 1)
     warn("a reflectivity above 1: are the rectangles exchanged, or lit differently?");
   if (arguments.json) {
-    const Json json = {{"file", arguments.photograph},
-                       {"reflectivity", vectorToJson(result.value)},
-                       {"standard_error", vectorToJson(result.standardError)},
-                       {"percent", percent},
-                       {"reflected", toJson(reflected)},
-                       {"direct", toJson(direct)},
-                       {"standard_reflectance", vectorToJson(standard)}};
-    fmt::print("{}\n", jsonText(json, 2));
+    const JsonValue json = {{"file", arguments.photograph},
+                            {"reflectivity", vectorToJson(result.value)},
+                            {"standard_error", vectorToJson(result.standardError)},
+                            {"percent", percent},
+                            {"reflected", toJson(reflected)},
+                            {"direct", toJson(direct)},
+                            {"standard_reflectance", vectorToJson(standard)}};
+    printJson(json);
     return;
   }
   const auto triple = [](const dvec3& v) {
@@ -118,28 +114,24 @@ void run(const ProbeReflectivityArguments& arguments) {
 }  // namespace
 
 void addProbeReflectivityCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeReflectivityArguments>();
-  Command command = probe.addCommand(
+  auto [command, a] = probe.addCommand<ProbeReflectivityArguments>(
       "reflectivity",
       "Measure how much a mirror ball or a paint reflects, from a photograph that shows a surface "
-      "directly and in the ball, or the paint and a standard.");
-  command.addOption("PHOTO", arguments->photograph, "a linear image").required();
-  command.addOption("--direct", arguments->direct,
+      "directly and in the ball, or the paint and a standard.",
+      run);
+  command.addRequired("PHOTO", a.photograph, "a linear image");
+  command.addOption("--direct", a.direct,
                     "X,Y,WIDTH,HEIGHT in pixels: the surface seen directly, or the standard");
-  command
-      .addOption("--reflected", arguments->reflected,
-                 "X,Y,WIDTH,HEIGHT: the same surface in the ball, or the paint")
-      .required();
-  command.addOption("--against", arguments->against,
-                    "where the standard is: the photograph in which --direct lies, or its "
-                    "rectangle in PHOTO");
-  command.addOption("--standard-reflectance", arguments->standard,
-                    "X or R,G,B of the standard; else 1");
-  command.addOption("--saturation", arguments->saturation,
-                    "the level from which on channels are clipped; else 1 in integer images, and "
-                    "65504");
-  command.addFlag("--json", arguments->json, "print JSON");
-  command.callback([arguments] { run(*arguments); });
+  command.addRequired("--reflected", a.reflected,
+                      "X,Y,WIDTH,HEIGHT: the same surface in the ball, or the paint");
+  command.addOption(
+      "--against", a.against,
+      "where the standard is: the photograph in which --direct lies, or its rectangle in PHOTO");
+  command.addOption("--standard-reflectance", a.standard, "X or R,G,B of the standard; else 1");
+  command.addOption(
+      "--saturation", a.saturation,
+      "the level from which on channels are clipped; else 1 in integer images, and 65504");
+  command.addFlag("--json", a.json, "print JSON");
 }
 
 }  // namespace chromeball

@@ -6,15 +6,15 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "light_options.h"
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_list.h"
 #include "messages.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"
-#include "probe_commands.h"
+#include "probe_options.h"
 
 namespace chromeball {
 namespace {
@@ -41,13 +41,13 @@ void splitProbe(const SplitArguments& arguments) {
   for (const Sun& sun : extraction.suns)
     rig.lights.push_back(
         {vec3(sun.direction), Rgb(sun.irradiance), float(arguments.angle.value_or(sun.angle))});
-  print(writeImage(arguments.rest, extraction.remainder), false);
+  print(writeImage(arguments.rest, extraction.remainder));
   writeLights(arguments.suns, rig);
   fmt::print("suns        {}\n", extraction.suns.size());
   for (const DirectionalLight& light : rig.lights)
     fmt::print(
-        "sun         direction {:.4f} {:.4f} {:.4f}, irradiance {:.4g} {:.4g} {:.4g}, "
-        "diameter {:.4g} degrees\n",
+        "sun         direction {:.4f} {:.4f} {:.4f}, irradiance {:.4g} {:.4g} {:.4g}, diameter "
+        "{:.4g} degrees\n",
         light.direction.x, light.direction.y, light.direction.z, light.irradiance.x,
         light.irradiance.y, light.irradiance.z, light.angle);
 }
@@ -73,42 +73,34 @@ void addSuns(const AddArguments& arguments) {
     if (!std::isfinite(texel))
       throwInput("{}: with {} a texel exceeds the largest float, 3.4e38", arguments.lights,
                  arguments.probe.file);
-  print(writeImage(arguments.out, map), false);
+  print(writeImage(arguments.out, map));
 }
 
 }  // namespace
 
 void addProbeSplitCommand(Command probe) {
-  const auto arguments = std::make_shared<SplitArguments>();
-  Command command = probe.addCommand(
+  auto [command, a] = probe.addCommand<SplitArguments>(
       "split",
-      "Divide a probe into its suns, as a list of lights, and the rest, as a lat-long map.");
-  command.addOption("PROBE", arguments->probe.file, "the probe's image").required();
-  command.addOption("--suns", arguments->suns, "the .json to write; [[light]] `file` reads it")
-      .required();
-  command.addOption("--rest", arguments->rest, "the image to write: .exr, .hdr, .pfm or .png")
-      .required();
-  command.addOption("--angle", arguments->angle,
-                    "diameter of the suns in degrees, in place of the measured one; the Sun's is "
-                    "0.5323");
-  command.addOption("--probe-mask", arguments->probe.mask, kMaskHelp);
-  command.addOption("--mapping", arguments->probe.mapping, "the mapping of PROBE; auto detects it");
-  command.callback([arguments] { splitProbe(*arguments); });
+      "Divide a probe into its suns, as a list of lights, and the rest, as a lat-long map.",
+      splitProbe);
+  command.addRequired("PROBE", a.probe.file, "the probe's image");
+  command.addRequired("--suns", a.suns, "the .json to write; [[light]] `file` reads it");
+  command.addRequired("--rest", a.rest, "the image to write: .exr, .hdr, .pfm or .png");
+  command.addOption(
+      "--angle", a.angle,
+      "diameter of the suns in degrees, in place of the measured one; the Sun's is 0.5323");
+  command.addOption("--probe-mask", a.probe.mask, kMaskHelp);
+  command.addOption("--mapping", a.probe.mapping, "the mapping of PROBE; auto detects it");
 }
 
 void addProbeAddSunCommand(Command probe) {
-  const auto arguments = std::make_shared<AddArguments>();
-  Command command = probe.addCommand(
-      "add-sun", "Draw a list of lights into a probe: discs of constant radiance.");
-  command.addOption("IN", arguments->probe.file, "the probe's image").required();
-  command.addOption("OUT", arguments->out, "the lat-long map to write: .exr, .hdr, .pfm or .png")
-      .required();
-  command
-      .addOption("--lights", arguments->lights,
-                 "the .json of `probe split` or `lights`; its ambient light is added too")
-      .required();
-  command.addOption("--mapping", arguments->probe.mapping, "the mapping of IN; auto detects it");
-  command.callback([arguments] { addSuns(*arguments); });
+  auto [command, a] = probe.addCommand<AddArguments>(
+      "add-sun", "Draw a list of lights into a probe: discs of constant radiance.", addSuns);
+  command.addRequired("IN", a.probe.file, "the probe's image");
+  command.addRequired("OUT", a.out, "the lat-long map to write: .exr, .hdr, .pfm or .png");
+  command.addRequired("--lights", a.lights,
+                      "the .json of `probe split` or `lights`; its ambient light is added too");
+  command.addOption("--mapping", a.probe.mapping, "the mapping of IN; auto detects it");
 }
 
 }  // namespace chromeball

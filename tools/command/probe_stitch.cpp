@@ -5,16 +5,15 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "busy_line.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "front/tile_file.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/capture/stitch.h"
-#include "probe_commands.h"
-#include "write_probe.h"
+#include "progress_bar.h"
 
 namespace chromeball {
 namespace {
@@ -87,7 +86,7 @@ void run(const ProbeStitchArguments& arguments) {
   busy.reset();
   constexpr double kGap = 1e-5;
   if (probe.uncovered > kGap)
-    warn(fmt::format("{:.3g}% of the sphere is in no tile, and black", 100 * probe.uncovered));
+    warn("{:.3g}% of the sphere is in no tile, and black", 100 * probe.uncovered);
   writeProbe(arguments.out, probe.latLong);
   if (!arguments.poses.empty()) writeTiles(arguments.poses, entries);
 }
@@ -95,20 +94,18 @@ void run(const ProbeStitchArguments& arguments) {
 }  // namespace
 
 void addProbeStitchCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeStitchArguments>();
-  Command command = probe.addCommand(
-      "stitch", "Stitch photographs of known direction (tiles) to a lat-long probe.");
-  command.addOption("TILES", arguments->list, "the list of tiles (.toml); see below").required();
-  command.addOption("-o,--output", arguments->out, "the probe to write: .exr, .hdr, .pfm or .png")
-      .required();
-  command.addOption("--size", arguments->size,
+  auto [command, a] = probe.addCommand<ProbeStitchArguments>(
+      "stitch", "Stitch photographs of known direction (tiles) to a lat-long probe.", run);
+  command.addRequired("TILES", a.list, "the list of tiles (.toml); see below");
+  command.addRequired("-o,--output", a.out, "the probe to write: .exr, .hdr, .pfm or .png");
+  command.addOption("--size", a.size,
                     "WIDTHxHEIGHT; else the size that keeps the detail of the tiles");
-  command.addFlag("--refine", arguments->refine,
+  command.addFlag("--refine", a.refine,
                   "turn all tiles but the first until they agree where they overlap");
-  command.addOption("--poses", arguments->poses,
+  command.addOption("--poses", a.poses,
                     "with --refine: write the list with the poses that were found (.toml), for "
                     "other exposures from the same directions");
-  command.addFlag("--same-exposure", arguments->sameExposure,
+  command.addFlag("--same-exposure", a.sameExposure,
                   "take the tiles as they are; else factors make them agree where they overlap");
   command.footer(
       "The list:\n"
@@ -118,7 +115,6 @@ void addProbeStitchCommand(Command probe) {
       "  yaw = 40            # of the camera, as of a probe's rotation: 0 looks along -Z,\n"
       "  pitch = 10          # positive yaw to the left, positive pitch up,\n"
       "  roll = 0            # positive roll lifts the camera's right\n");
-  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace chromeball

@@ -3,27 +3,22 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/json.h"
-#include "base/json_text.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "input_image.h"
+#include "image_files.h"
 #include "json_values.h"
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_list.h"
 #include "messages.h"
 #include "probe/capture/sun_from_ball.h"
 #include "probe/synth.h"
-#include "probe_commands.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {
 
 constexpr double kSeldomExplained = 0.2;  // of the mean: another direction, or another ball
-
-using Json = nlohmann::ordered_json;
 
 struct ProbeSunArguments {
   std::string probe, mapping = "auto", ball, circle, paint, camera, distance, direction, mask;
@@ -82,13 +77,12 @@ BallSamples readBall(const ProbeSunArguments& arguments, const DiffuseBall& ball
   const ImageFile file = openImageFile(arguments.ball);
   const Image photograph = colorOf(ImageFile(file), arguments.ball);
   if (file.integers)
-    warn(fmt::format("{}: has integer texels, decoded as sRGB; a merged .exr is linear",
-                     arguments.ball));
+    warn("{}: has integer texels, decoded as sRGB; a merged .exr is linear", arguments.ball);
   BallSamples samples =
       sampleBall(ball, photograph, excludedPixels(arguments, file, photograph), arguments.ball);
   if (samples.invalid > 0)
-    warn(fmt::format("{}: left out {} pixels that are not finite, or negative", arguments.ball,
-                     samples.invalid));
+    warn("{}: left out {} pixels that are not finite, or negative", arguments.ball,
+         samples.invalid);
   return samples;
 }
 
@@ -111,14 +105,14 @@ Direction directionOf(const ProbeSunArguments& arguments, const LoadedProbe& pro
       findClippedSun(probe.latLong, clipped ? &*clipped : nullptr, arguments.probe);
   if (sun.width > kWide)
     warn(
-        fmt::format("{}: what is clipped around the sun is {:.2g} degrees wide, so that its "
-                    "direction is uncertain; give --direction",
-                    arguments.probe, sun.width));
+        "{}: what is clipped around the sun is {:.2g} degrees wide, so that its "
+        "direction is uncertain; give --direction",
+        arguments.probe, sun.width);
   if (sun.rivals > 0)
     warn(
-        fmt::format("{}: {} other clipped region{} half as large as the sun's or larger; give "
-                    "--direction if the sun is another one",
-                    arguments.probe, sun.rivals, sun.rivals == 1 ? " is" : "s are"));
+        "{}: {} other clipped region{} half as large as the sun's or larger; give "
+        "--direction if the sun is another one",
+        arguments.probe, sun.rivals, sun.rivals == 1 ? " is" : "s are");
   return {sun.direction, sun.width};
 }
 
@@ -133,12 +127,12 @@ void writeResidual(const std::string& path, const SunFromBall& result, const Bal
     for (float& channel : image.texels)
       channel = srgbToLinear(std::clamp(0.5f + 5 * channel / mean, 0.0f, 1.0f));
   }
-  print(writeImage(path, image), false);
+  print(writeImage(path, image));
 }
 
-Json toJson(const SunFromBall& result, const Direction& direction, const BallSamples& ball) {
+JsonValue toJson(const SunFromBall& result, const Direction& direction, const BallSamples& ball) {
   return {{"direction", vectorToJson(result.sun.direction)},
-          {"clipped_width", direction.width ? Json(*direction.width) : Json(nullptr)},
+          {"clipped_width", orNull(direction.width)},
           {"angle", result.sun.angle},
           {"alpha", vectorToJson(result.alpha)},
           {"irradiance", vectorToJson(result.sun.irradiance)},
@@ -187,14 +181,12 @@ void run(const ProbeSunArguments& arguments) {
   const BallSamples samples = readBall(arguments, ball);
   const SunFromBall result = solveSun(probe.latLong, samples, direction.direction, arguments.angle);
   if (result.rms > kSeldomExplained)
-    warn(fmt::format(
-        "the ball differs by {:.3g}% of its mean from what probe and sun make it, by {:.3g}% "
-        "without the sun: check --camera, --direction, --circle and --paint",
-        100 * result.rms, 100 * result.rmsOfProbe));
-  if (arguments.json)
-    fmt::print("{}\n", jsonText(toJson(result, direction, samples), 2));
-  else
-    print(result, direction, samples);
+    warn(
+        "the ball differs by {:.3g}% of its mean from what probe and sun make it, by "
+        "{:.3g}% without the sun: check --camera, --direction, --circle and --paint",
+        100 * result.rms, 100 * result.rmsOfProbe);
+  arguments.json ? printJson(toJson(result, direction, samples))
+                 : print(result, direction, samples);
   const Sun& sun = result.sun;
   if (!arguments.residual.empty()) writeResidual(arguments.residual, result, samples);
   if (!arguments.lights.empty())
@@ -212,40 +204,35 @@ void run(const ProbeSunArguments& arguments) {
 }  // namespace
 
 void addProbeSunCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeSunArguments>();
-  Command command =
-      probe.addCommand("sun",
-                       "Find the irradiance of a sun that a probe's photographs have clipped, "
-                       "from a photograph of a "
-                       "diffuse ball in the same light and with the same exposure.");
-  command.addOption("CLIPPED", arguments->probe, "the probe's image").required();
-  command.addOption("--diffuse", arguments->ball, "the photograph of the ball, linear").required();
-  command.addOption("--circle", arguments->circle, "X,Y,R: the ball in it, in pixels").required();
-  command.addOption("--paint", arguments->paint, "X or R,G,B: the reflectance of the ball")
-      .required();
-  command
-      .addOption("--camera", arguments->camera,
-                 "AZ,EL: where the camera is, seen from the ball, in degrees: 0 is +Z, 90 is +X; "
-                 "elevation 90 is +Y")
-      .required();
-  command.addOption("--distance", arguments->distance,
+  auto [command, a] = probe.addCommand<ProbeSunArguments>(
+      "sun",
+      "Find the irradiance of a sun that a probe's photographs have clipped, from a photograph of "
+      "a diffuse ball in the same light and with the same exposure.",
+      run);
+  command.addRequired("CLIPPED", a.probe, "the probe's image");
+  command.addRequired("--diffuse", a.ball, "the photograph of the ball, linear");
+  command.addRequired("--circle", a.circle, "X,Y,R: the ball in it, in pixels");
+  command.addRequired("--paint", a.paint, "X or R,G,B: the reflectance of the ball");
+  command.addRequired("--camera", a.camera,
+                      "AZ,EL: where the camera is, seen from the ball, in degrees: 0 is +Z, 90 is "
+                      "+X; elevation 90 is +Y");
+  command.addOption("--distance", a.distance,
                     "of the camera, in radii of the ball; without it infinite");
-  command.addOption("--angle", arguments->angle, "diameter of the sun in degrees").showsDefault();
-  command.addOption("--direction", arguments->direction,
+  command.addWithDefault("--angle", a.angle, "diameter of the sun in degrees");
+  command.addOption("--direction", a.direction,
                     "X,Y,Z: towards the sun; without it the middle of what is clipped: the layer "
                     "`clipped` (`probe merge`), or the brightest texels");
-  command.addOption("--mask", arguments->mask,
+  command.addOption("--mask", a.mask,
                     "an image of the photograph's size, black where the ball does not count");
-  command.addOption("-o,--output", arguments->output,
+  command.addOption("-o,--output", a.output,
                     "the lat-long map with the sun to write: .exr, .hdr, .pfm or .png");
-  command.addOption("--lights", arguments->lights,
+  command.addOption("--lights", a.lights,
                     "the sun as a list of lights to write, .json; [[light]] `file` reads it");
-  command.addOption("--residual", arguments->residual,
+  command.addOption("--residual", a.residual,
                     "an image to write of what neither probe nor sun explain: .exr, or .png in "
                     "which black and white are 10% of the mean");
-  command.addOption("--mapping", arguments->mapping, "the mapping of CLIPPED; auto detects it");
-  command.addFlag("--json", arguments->json, "print JSON");
-  command.callback([arguments] { run(*arguments); });
+  command.addOption("--mapping", a.mapping, "the mapping of CLIPPED; auto detects it");
+  command.addFlag("--json", a.json, "print JSON");
 }
 
 }  // namespace chromeball

@@ -6,11 +6,11 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "commands.h"
 #include "front/arguments.h"
 #include "image/io/write_image.h"
+#include "image_files.h"
 #include "probe/synth.h"
-#include "probe_commands.h"
-#include "write_probe.h"
 
 namespace chromeball {
 namespace {
@@ -120,36 +120,22 @@ void run(const ProbeSynthArguments& arguments, const Command& command) {
 }  // namespace
 
 void addProbeSynthCommand(Command probe) {
-  const auto arguments = std::make_shared<ProbeSynthArguments>();
-  Command command = probe.addCommand("synth", "Make a lat-long probe from a formula.");
-  command
-      .addOption("KIND", arguments->kind,
-                 "constant, one-hot, gradient, sun-sky, overcast or studio")
-      .required();
-  command.addOption("OUT", arguments->out, "the image to write: .exr, .hdr, .pfm or .png")
-      .required();
-  command.addOption("--size", arguments->size, "WIDTHxHEIGHT").showsDefault();
-  command
-      .addOption("--radiance", arguments->radiance,
-                 "R,G,B: of constant, one-hot's texel, gradient's mean, overcast's zenith")
-      .showsDefault();
-  command.addOption("--texel", arguments->texel, "X,Y: one-hot's texel; else the middle one");
-  command.addOption("--direction", arguments->direction, "X,Y,Z: or the one it lies in")
-      .excludes("--texel");
-  command.addOption("--slope", arguments->slope, "X,Y,Z: gradient is radiance (1 + slope . D)")
-      .showsDefault();
-  command.addOption("--sun-elevation", arguments->sky.sunElevation, "degrees, 0 to 90")
-      .showsDefault();
-  command
-      .addOption("--sun-azimuth", arguments->sky.sunAzimuth,
-                 "degrees from -Z, counter-clockwise seen from above")
-      .showsDefault();
-  command.addOption("--turbidity", arguments->sky.turbidity, "2 (very clear) to 10 (hazy)")
-      .showsDefault();
-  command.addOption("--ground-albedo", arguments->sky.groundAlbedo, "0 to 1: sun-sky, overcast")
-      .showsDefault();
-  command.addFlag("--no-sun", arguments->withoutSun, "sun-sky without its sun");
-  command.callback([arguments, command] { run(*arguments, command); });
+  auto [command, a] =
+      probe.addCommand<ProbeSynthArguments>("synth", "Make a lat-long probe from a formula.", run);
+  command.addRequired("KIND", a.kind, "constant, one-hot, gradient, sun-sky, overcast or studio");
+  command.addRequired("OUT", a.out, "the image to write: .exr, .hdr, .pfm or .png");
+  command.addWithDefault("--size", a.size, "WIDTHxHEIGHT");
+  command.addWithDefault("--radiance", a.radiance,
+                         "R,G,B: of constant, one-hot's texel, gradient's mean, overcast's zenith");
+  command.addOption("--texel", a.texel, "X,Y: one-hot's texel; else the middle one");
+  command.addOption("--direction", a.direction, "X,Y,Z: or the one it lies in").excludes("--texel");
+  command.addWithDefault("--slope", a.slope, "X,Y,Z: gradient is radiance (1 + slope . D)");
+  command.addWithDefault("--sun-elevation", a.sky.sunElevation, "degrees, 0 to 90");
+  command.addWithDefault("--sun-azimuth", a.sky.sunAzimuth,
+                         "degrees from -Z, counter-clockwise seen from above");
+  command.addWithDefault("--turbidity", a.sky.turbidity, "2 (very clear) to 10 (hazy)");
+  command.addWithDefault("--ground-albedo", a.sky.groundAlbedo, "0 to 1: sun-sky, overcast");
+  command.addFlag("--no-sun", a.withoutSun, "sun-sky without its sun");
 }
 
 }  // namespace chromeball

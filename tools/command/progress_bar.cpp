@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "messages.h"
@@ -14,7 +15,7 @@
 namespace chromeball {
 namespace {
 
-constexpr int kWidth = 32, kLeastWidth = 8;
+constexpr int kBarWidth = 32, kLeastBarWidth = 8;
 
 int terminalColumns() {
   winsize size{};
@@ -52,18 +53,38 @@ void ProgressBar::update(double fraction) {
   const int columns = terminalColumns();
   const std::string described =
       description_.empty() ? times : fmt::format("{}, {}", times, description_);
-  const bool fits = int(title_.size() + described.size()) + kLeastWidth + 3 < columns;
+  const bool fits = int(title_.size() + described.size()) + kLeastBarWidth + 3 < columns;
   const std::string& text = fits ? described : times;
   if (std::isnan(fraction)) {
     writeError(fmt::format("\r{}{}\x1b[K", title_, text));
   } else {
     const int room = columns - int(title_.size() + text.size()) - 4;
-    const int width = std::clamp(room, kLeastWidth, kWidth), full = int(fraction * width);
+    const int width = std::clamp(room, kLeastBarWidth, kBarWidth), full = int(fraction * width);
     writeError(fmt::format("\r{}[{}{}] {}\x1b[K", title_, std::string(full, '#'),
                            std::string(width - full, '.'), text));
   }
 }
 
 bool ProgressBar::isTerminal() { return isatty(STDERR_FILENO); }
+
+BusyLine::BusyLine(std::string title) {
+  if (!ProgressBar::isTerminal()) return;
+  thread_ = std::thread([this, title = std::move(title)] {
+    ProgressBar bar(true, title);
+    std::unique_lock lock(mutex_);
+    while (!changed_.wait_for(lock, std::chrono::seconds(1), [this] { return done_; }))
+      bar.update(std::numeric_limits<double>::quiet_NaN());
+  });
+}
+
+BusyLine::~BusyLine() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    done_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
 
 }  // namespace chromeball

@@ -4,7 +4,10 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace chromeball {
 
@@ -26,6 +29,22 @@ class ProgressBar {
   bool shown_, drawn_ = false, ended_ = false;
   std::string title_, description_;
   Clock::time_point start_ = Clock::now(), last_{};
+};
+
+// The time elapsed, during work that cannot tell how much of it is done: a line that is shown from
+// construction to destruction, which clears it; only on a terminal.
+class BusyLine {
+ public:
+  explicit BusyLine(std::string title);  // of the work: "lights"
+  ~BusyLine();
+  BusyLine(const BusyLine&) = delete;
+  BusyLine& operator=(const BusyLine&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool done_ = false;
+  std::thread thread_;
 };
 
 }  // namespace chromeball

@@ -2,14 +2,14 @@
 // chromeball relight STAGE.exr --probe P -o OUT.exr: a light stage under a probe.
 // chromeball relight STAGE.exr --probe P --probe Q --preview: on a page, where the probes turn.
 // chromeball relight MODEL_PRT.glb --probe P -o MODEL_LIT.glb: vertices by their transfer.
+#include "relight.h"
+
 #include "base/error.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "relight_model.h"
-#include "relight_stage.h"
-#include "rotation_option.h"
+#include "probe_options.h"
 
 namespace chromeball {
 namespace {
@@ -69,8 +69,7 @@ void runModel(const RelightOptions& a) {
   refuseGiven(optionsOfDisplay(a), kWhy);
   if (a.probes.size() != 1) throwInput("--probe: give one");
   if (a.out.empty()) throwInput("--output: needs a name");
-  runRelightModel({a.stage, a.out, a.probes.front(), a.mapping, a.scale, a.keep, a.rotation, a.view,
-                   a.white, a.allowsExternal, a.quiet});
+  runRelightModel(a);
 }
 
 void check(const RelightOptions& a) {
@@ -103,66 +102,55 @@ void run(const RelightOptions& a) {
 }  // namespace
 
 void addRelightCommand(Command app) {
-  const auto a = std::make_shared<RelightOptions>();
-  Command command =
-      app.addCommand("relight", "Light a light stage, or a model with transfer, by a probe");
-  command.addOption("STAGE", a->stage, "the light stage or model, from `chromeball basis`");
-  command.addOption("--images", a->images,
+  auto [command, a] = app.addCommand<RelightOptions>(
+      "relight", "Light a light stage, or a model with transfer, by a probe", run);
+  command.addOption("STAGE", a.stage, "the light stage or model, from `chromeball basis`");
+  command.addOption("--images", a.images,
                     "in place of STAGE: a folder of linear photographs of a subject, each under "
                     "light from one direction");
-  command.addOption("--directions", a->directions,
+  command.addOption("--directions", a.directions,
                     "a .csv of these: FILE,X,Y,Z or FILE,AZIMUTH,ELEVATION (degrees) on each line");
-  command
-      .addOption("--irradiance", a->irradiance,
-                 "of these: what the lamp puts on a surface that faces it")
-      .showsDefault();
-  command.addOption("--probe", a->probes, "the light; with --preview several, each by --probe")
+  command.addWithDefault("--irradiance", a.irradiance,
+                         "of these: what the lamp puts on a surface that faces it");
+  command.addOption("--probe", a.probes, "the light; with --preview several, each by --probe")
       .typeName("TEXT")
       .takesAll();
-  command.addOption("--mapping", a->mapping, "of the probe; auto detects it").showsDefault();
-  addRotationOption(command, a->rotation);
-  command.addOption("--scale", a->scale, "X or R,G,B: factor of the probe").showsDefault();
-  command
-      .addOption("--domain", a->domain,
-                 "where the sum is made: pixel, dct (lat-long), haar (cube), sh; the result is "
-                 "the same, unless some is left out")
-      .showsDefault();
-  command
-      .addOption("--keep", a->keep,
-                 "PERCENT of the stage's numbers in that domain to keep, the largest; prints the "
-                 "error. Of a model: how many of the light's coefficients to keep, or PERCENT%")
-      .showsDefault();
-  command
-      .addOption("--keep-light", a->keepLight,
-                 "PERCENT of the light's numbers in that domain to keep, the largest")
-      .showsDefault();
-  command.addOption("--reflectance-function", a->pixel,
+  command.addWithDefault("--mapping", a.mapping, "of the probe; auto detects it");
+  addRotationOption(command, a.rotation);
+  command.addWithDefault("--scale", a.scale, "X or R,G,B: factor of the probe");
+  command.addWithDefault("--domain", a.domain,
+                         "where the sum is made: pixel, dct (lat-long), haar (cube), sh; the "
+                         "result is the same, unless some is left out");
+  command.addWithDefault(
+      "--keep", a.keep,
+      "PERCENT of the stage's numbers in that domain to keep, the largest; prints the error. Of a "
+      "model: how many of the light's coefficients to keep, or PERCENT%");
+  command.addWithDefault("--keep-light", a.keepLight,
+                         "PERCENT of the light's numbers in that domain to keep, the largest");
+  command.addOption("--reflectance-function", a.pixel,
                     "X,Y: in place of a probe, what this pixel reflects of light from each "
                     "direction, as a lat-long map");
-  command.addOption("-o,--output", a->out,
+  command.addOption("-o,--output", a.out,
                     "the image to write: .exr, .hdr, .pfm or .png; of a model .glb or .gltf");
   command
       .addFlagWithValue(
-          "--preview", [a](const std::string& word) { a->preview = word == "true" ? "0" : word; },
+          "--preview",
+          [&port = a.preview](const std::string& word) { port = word == "true" ? "0" : word; },
           "in place of an output: a page at http://127.0.0.1:PORT/ (any free port without one) on "
           "which the probes are turned and swapped")
       .typeName("[=PORT]");
-  command.addOption(
-      "--white", a->white,
-      "of a model: the light that its white stands for; without it, the smallest power "
-      "of two, from 1 up, that clips nothing");
-  command.addOption("--view", a->view, "X,Y,Z: the eye, of a model with glossy transfer");
-  command.addFlag("--allow-external", a->allowsExternal,
+  command.addOption("--white", a.white,
+                    "of a model: the light that its white stands for; without it, the smallest "
+                    "power of two, from 1 up, that clips nothing");
+  command.addOption("--view", a.view, "X,Y,Z: the eye, of a model with glossy transfer");
+  command.addFlag("--allow-external", a.allowsExternal,
                   "of a model: read files outside of its folder");
-  command.addOption("--memory", a->memory,
+  command.addOption("--memory", a.memory,
                     "GB: a stage that takes more is read in bands; else 0.8 times the machine's");
-  command.addOption("--exposure", a->exposure, "of a .png, in stops");
-  command
-      .addOption("--tonemap", a->tone,
-                 fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")))
-      .showsDefault();
-  command.addFlag("--quiet", a->quiet, "print nothing but warnings and errors");
-  command.callback([a] { run(*a); });
+  command.addOption("--exposure", a.exposure, "of a .png, in stops");
+  command.addWithDefault("--tonemap", a.tone,
+                         fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")));
+  command.addFlag("--quiet", a.quiet, "print nothing but warnings and errors");
 }
 
 }  // namespace chromeball

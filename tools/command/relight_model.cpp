@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "relight_model.h"
+#include "relight.h"
 
 #include "bake/baked_file.h"
 #include "bake/vertex_light.h"
@@ -24,30 +24,29 @@ size_t parseKeep(std::string text, size_t count) {
   const double kept = isPercent ? std::round(number / 100 * double(count)) : number;
   if (!(number > 0) || number > (isPercent ? 100 : double(count)) || kept != std::floor(kept))
     throwInput(
-        "--keep: should be a whole number from 1 to {}, or a percentage above 0 and up to "
-        "100%",
+        "--keep: should be a whole number from 1 to {}, or a percentage above 0 and up to 100%",
         count);
   return std::max<size_t>(size_t(kept), 1);
 }
 
 class RelightModel {
  public:
-  explicit RelightModel(const RelightModelOptions& options)
+  explicit RelightModel(const RelightOptions& options)
       : options_(options),
-        file_(options.model, options.allowsExternal ? ExternalFiles::Allow : ExternalFiles::Refuse,
+        file_(options.stage, options.allowsExternal ? ExternalFiles::Allow : ExternalFiles::Refuse,
               [&](const std::string& line) { warnings_.push_back(line); }),
         what_(isGlossy(file_) ? BakedLight::Radiance : BakedLight::Irradiance),
         kept_(parseKeep(options.keep, file_.basis().size())),
         world_(file_.scene()),
         tracer_(world_, dark_, {}) {
     if (isGlossy(file_) == options.view.empty())
-      throwInput("{}: {}", options.view.empty() ? options.model : "--view",
+      throwInput("{}: {}", options.view.empty() ? options.stage : "--view",
                  options.view.empty() ? "its transfer is glossy; give the eye by --view X,Y,Z"
                                       : "the model's transfer is diffuse, the same from each side");
   }
 
   void run() {
-    checkDistinct({options_.output}, file_.scene().files);
+    checkDistinct({options_.out}, file_.scene().files);
     std::vector<Rgb> light = coefficients();
     const Stopwatch watch;
     keepMostImportant(file_.basis(), kept_, light);
@@ -59,7 +58,7 @@ class RelightModel {
     std::vector<BakedGeometry> geometry = colouredGeometry(what, meshes, points, lit.light);
     const float white =
         options_.white ? float(*options_.white) : scaleOf(brightestOf(what, geometry));
-    writeBaked(options_.output, file_.scene(), geometry, {}, file(white));
+    writeBaked(options_.out, file_.scene(), geometry, {}, file(white));
     if (lit.negative > 0)
       warnings_.push_back(fmt::format(
           "{} of {} vertices had a negative channel, which was raised to 0: {} light rings there",
@@ -68,7 +67,7 @@ class RelightModel {
     if (options_.quiet) return;
     fmt::print("lit {} vertices in {:.3f} s by {} of {} coefficients of {}, scale {:g}: {}\n",
                points.size(), seconds, kept_, file_.basis().size(), file_.basis().name(), white,
-               options_.output);
+               options_.out);
   }
 
  private:
@@ -85,15 +84,15 @@ class RelightModel {
     for (const PointResult& point : lit.light.points)
       if (!isFinite(point.mean()))
         throwInput("{}: the light exceeds the largest float, 3.4e38; give a smaller --scale",
-                   options_.model);
+                   options_.stage);
     return lit;
   }
 
   std::vector<Rgb> coefficients() {
-    const LoadedProbe loaded = loadProbe(options_.probe, options_.mapping, "--mapping");
-    print(loaded.messages, false);
-    for (const auto& lines :
-         {warnings(loaded, options_.probe), lightWarnings(loaded, options_.probe)})
+    const LoadedProbe loaded = loadProbe(options_.probes.front(), options_.mapping, "--mapping");
+    print(loaded.messages);
+    for (const auto& lines : {warnings(loaded, options_.probes.front()),
+                              lightWarnings(loaded, options_.probes.front())})
       warnings_.insert(warnings_.end(), lines.begin(), lines.end());
     for (const Message& message : loaded.messages) warnings_.push_back(message.text);
     const Rgb scale = parseColor(options_.scale, "--scale");
@@ -107,8 +106,8 @@ class RelightModel {
     file.origin = file_.data().origin;
     if (!file_.scene().cameras.empty()) file.camera = file_.scene().cameras.front();
     file.extras["chromeball"] = {
-        {"relit", std::filesystem::path(options_.model).filename().string()},
-        {"probe", std::filesystem::path(options_.probe).filename().string()},
+        {"relit", std::filesystem::path(options_.stage).filename().string()},
+        {"probe", std::filesystem::path(options_.probes.front()).filename().string()},
         {"basis", file_.basis().name()},
         {"kept", kept_},
         {"scale", white}};
@@ -116,7 +115,7 @@ class RelightModel {
     return file;
   }
 
-  const RelightModelOptions& options_;
+  const RelightOptions& options_;
   std::vector<std::string> warnings_;
   TransferFile file_;
   BakedLight what_;
@@ -128,9 +127,9 @@ class RelightModel {
 
 }  // namespace
 
-void runRelightModel(const RelightModelOptions& options) {
-  checkOutputFile(options.output, {".glb", ".gltf"});
-  checkDistinct({options.output}, {options.model, options.probe});
+void runRelightModel(const RelightOptions& options) {
+  checkOutputFile(options.out, {".glb", ".gltf"});
+  checkDistinct({options.out}, {options.stage, options.probes.front()});
   if (options.white && !isPositiveFloat(*options.white))
     throwInput("--white: should be {}", kPositiveFloats);
   RelightModel(options).run();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "relight_stage.h"
-#include "input_image.h"
+#include "relight.h"
 
 #include <filesystem>
 
@@ -9,6 +8,7 @@
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/load.h"
 #include "relight/stage/light_stage.h"
@@ -47,7 +47,7 @@ LightStage readPhotographsOf(const RelightOptions& a) {
   if (!a.out.empty()) checkDistinct({a.out}, inputs);
   Messages messages;
   LightStage stage = stageOf(a.images, photographs, float(irradiance), memoryOf(a), messages);
-  print(messages, false);
+  print(messages);
   return stage;
 }
 
@@ -100,7 +100,7 @@ void writePicture(const RelightOptions& a, const Image& picture, const Direction
                      {"stage", a.source()},
                      {"basis", basis.name()}};
   if (!a.probes.empty()) output.metadata["probe"] = a.probes.front();
-  print(writeImage(a.out, output, transform), false);
+  print(writeImage(a.out, output, transform));
 }
 
 // "": all was kept.
@@ -151,10 +151,7 @@ void runRelightPreview(const RelightOptions& a) {
   std::vector<NamedProbe> probes;
   for (const std::string& path : a.probes)
     probes.push_back({std::filesystem::path(path).filename().string(), loadLight(a, path)});
-  const RelightView view(readStage(a), std::move(probes));
-  RelightServer server(int(port), view);
-  note(fmt::format("preview at {}; Ctrl-C or its button ends it", server.address()));
-  server.run();
+  serveRelight(int(port), readStage(a), std::move(probes));
 }
 
 }  // namespace chromeball

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball render: renders a scene to image files.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <set>
+#include <vector>
 
 #include "base/error.h"
 #include "base/json.h"
@@ -13,22 +19,90 @@
 #include "front/plan_render.h"
 #include "front/sequence.h"
 #include "image/io/output_file.h"
-#include "image_noise_text.h"
-#include "image_render.h"
 #include "interrupt.h"
 #include "lighting/methods.h"
 #include "messages.h"
+#include "parts/checkpoint.h"
+#include "progress_bar.h"
 #include "render_hints.h"
 #include "scene_options.h"
 #include "session/develop_image.h"
 #include "session/image_header.h"
 #include "session/render_loaded.h"
 #include "session/render_report.h"
-#include "thread_limit.h"
 #include "viewers/viewers.h"
 
 namespace chromeball {
 namespace {
+
+// Reports the image so far after each pass.
+class PassReport {
+ public:
+  std::string of(const RenderResult& result) {
+    const RayCounts& counts = result.rays;
+    const uint64_t rays = counts.camera + counts.shadow + counts.bounce;
+    std::string text = fmt::format("{} samples", result.samples);
+    if (const Noise noise = result.film.noise(); !std::isnan(noise.noise))
+      text += fmt::format(", noise {:.2g}%", 100 * noise.noise);
+    if (rays_ > 0)  // a render that was resumed has rays of other times
+      text += fmt::format(", {:.1f} M rays/s", 1e-6 * double(rays - rays_) / watch_.seconds());
+    rays_ = rays;
+    watch_ = Stopwatch();
+    return text;
+  }
+
+ private:
+  uint64_t rays_ = 0;
+  Stopwatch watch_;
+};
+
+// Renders one image, with a progress bar, and writes and shows it meanwhile.
+class ImageRender {
+ public:
+  // All references must outlive this. Throws InputError for a checkpoint that does not fit.
+  ImageRender(const LoadedScene& loaded, bool showsProgress, std::vector<Viewer*> viewers)
+      : loaded_(loaded),
+        viewers_(std::move(viewers)),
+        bar_(showsProgress),
+        control_(
+            loaded,
+            [this, showsProgress](const RenderState& state) {
+              if (showsProgress) bar_.describe(report_.of(state.result));
+            },
+            viewers_) {}
+
+  // The image, ready to be written except for its state. Ends early if `stop` is set.
+  // `fractionOfAll`: maps the fraction done of this image to the fraction of all work.
+  FinishedRender run(const PreparedScene& prepared,
+                     const std::function<double(double)>& fractionOfAll,
+                     const std::atomic<bool>& stop) {
+    const RenderDescription& description = loaded_.description;
+    for (Viewer* viewer : viewers_) viewer->begin(description.output.files.front());
+    const auto progress = [&](double fraction) {
+      bar_.update(fractionOfAll(fraction));
+      for (Viewer* viewer : viewers_) viewer->update(fraction);
+    };
+    const bool isReference = description.composite && description.composite->passes == Passes::Two;
+    FinishedRender result =
+        renderLoaded(loaded_, prepared, progress, stop, isReference ? nullptr : &control_);
+    result.image.metadata = imageMetadata(loaded_, result, result.render, result.seconds);
+    const Messages& more = control_.messages();
+    result.messages.insert(result.messages.end(), more.begin(), more.end());
+    if (!viewers_.empty()) {
+      auto last = std::make_shared<ImageSoFar>(imageSoFar(result, result.render));
+      last->isLast = true;
+      for (Viewer* viewer : viewers_) viewer->show(last);
+    }
+    return result;
+  }
+
+ private:
+  const LoadedScene& loaded_;
+  std::vector<Viewer*> viewers_;
+  ProgressBar bar_;
+  PassReport report_;
+  CheckpointControl control_;
+};
 
 std::string guidedInWords(const RenderResult& render) {
   const bool lights = render.guidedRegions > 0, bounces = render.causticFraction > 0;
@@ -60,7 +134,7 @@ void printOutcome(const RenderDescription& description, const FinishedRender& re
 void writeImages(const RenderDescription& description, const LoadedScene& loaded,
                  const FinishedRender& result, PhaseSeconds seconds) {
   Stopwatch watch;
-  print(writeOutputs(description, result.image), false);
+  print(writeOutputs(description, result.image));
   seconds.render = result.seconds;
   seconds.write = watch.lap();
   if (const auto& stats = description.output.stats)
@@ -164,7 +238,7 @@ void checkProbes(const Sequence& sequence, bool overwrites) {
 // Messages that an earlier frame has not printed.
 void printNew(const Messages& messages, std::set<std::string>& printed, bool quiet) {
   for (const Message& message : messages)
-    if (printed.insert(message.text).second) print({message}, quiet);
+    if (printed.insert(message.text).second) print(Messages{message}, quiet);
 }
 
 void renderFrames(const Sequence& sequence, const SceneOptions& options) {
@@ -226,11 +300,10 @@ void render(const SceneOptions& options) {
 }  // namespace
 
 void addRenderCommand(Command app) {
-  const auto options = std::make_shared<SceneOptions>();
-  Command command = app.addCommand("render", "Render a scene file or a model to an image");
-  addSceneOptions(command, *options, SceneCommand::Render);
+  auto [command, a] =
+      app.addCommand<SceneOptions>("render", "Render a scene file or a model to an image", render);
+  addSceneOptions(command, a, SceneCommand::Render);
   command.footer(strategyHelp());
-  command.callback([options] { render(*options); });
 }
 
 }  // namespace chromeball

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/file.h"
-#include "why_black.h"
 
 namespace chromeball {
 namespace {
@@ -72,11 +72,11 @@ void addExcluded(const RenderResult& result, Messages& messages) {
     messages.push_back({Message::Kind::Warning, std::move(text)});
   };
   if (const InvalidSamples& invalid = result.invalid; invalid.total())
-    warning(fmt::format(
-        "{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), the "
-        "first at pixel ({}, {}); --aov invalid shows where",
-        invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
-        invalid.of(Defect::Negative), invalid.x, invalid.y));
+    warning(
+        fmt::format("{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), "
+                    "the first at pixel ({}, {}); --aov invalid shows where",
+                    invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
+                    invalid.of(Defect::Negative), invalid.x, invalid.y));
   const bool isComposite = !result.layers.empty() && result.groups.empty();
   if (result.clamped.count)
     warning(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the light of {}",
@@ -98,6 +98,18 @@ Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared
   if (const auto why = whyWhite(loaded, result.render))
     messages.push_back({Message::Kind::Note, *why});
   return messages;
+}
+
+std::string inWords(const ImageNoise& n) {
+  if (!std::isfinite(n.noise)) return "unknown";
+  return fmt::format("{:.2f}% (median of the pixels {:.2f}%, 95% of them below {:.2f}%)",
+                     100 * n.noise, 100 * n.median, 100 * n.p95);
+}
+
+std::string inWords(const std::optional<DenoiseReport>& denoised) {
+  if (!denoised) return "";
+  if (!std::isfinite(denoised->noise)) return "; denoised";
+  return fmt::format("; denoised to about {:.2f}%", 100 * denoised->noise);
 }
 
 }  // namespace chromeball

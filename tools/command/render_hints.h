@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages to the user about a rendered image, with suggestions of options.
+// What is said to the user about a rendered image, with suggestions of options.
 #pragma once
 
+#include <optional>
+#include <string>
+
+#include "render/render.h"
+#include "session/denoised_image.h"
+#include "session/load_scene.h"
 #include "session/render_loaded.h"
+#include "trace/accel.h"
 
 namespace chromeball {
 
@@ -16,5 +23,15 @@ std::string limitGiven(DepthLimit limit, const RenderSettings& settings);
 
 // Only the messages about excluded samples and clamped light.
 void addExcluded(const RenderResult& result, Messages& messages);
+
+// The likely cause, with the option to try, if no surface is in view or nearly all that are have
+// remained black; nullopt otherwise. Limits and parts of the light that took what there was are
+// named first.
+std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
+                                    const RenderResult& result);
+
+// The noise of an image in words: "1.20% (median of the pixels ...)"; "; denoised to about 0.3%".
+std::string inWords(const ImageNoise& n);
+std::string inWords(const std::optional<DenoiseReport>& denoised);
 
 }  // namespace chromeball

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <span>
 
+#include "front/settings.h"
 #include "front/settings_page.h"
 #include "progress_bar.h"
+#include "session/load_scene.h"
+#include "session/memory_estimate.h"
 
 namespace chromeball {
 namespace {
@@ -58,32 +61,12 @@ constexpr std::string_view kOfBake[] = {
     "animation",      "animation-time", "variant",        "camera",      "memory",    "threads",
     "texture-memory", "allow-external", "progress",       "quiet"};
 
-// Options that decide the picture, and none about its light, which comes from everywhere.
-constexpr std::string_view kOfBasis[] = {"size",
-                                         "samples",
-                                         "seed",
-                                         "max-depth",
-                                         "max-diffuse-depth",
-                                         "max-specular-depth",
-                                         "max-transmission-depth",
-                                         "mis",
-                                         "glass-shadows",
-                                         "single-sided",
-                                         "transparent",
-                                         "light-units",
-                                         "animation",
-                                         "animation-time",
-                                         "variant",
-                                         "camera",
-                                         "camera-file",
-                                         "memory",
-                                         "threads",
-                                         "texture-memory",
-                                         "allow-external",
-                                         "progress",
-                                         "quiet"};
-
-// The options among these that vertices do not need.
+// Options that decide the picture, and none about its light, which comes from everywhere: at
+// vertices, and the further ones at pixels.
+constexpr std::string_view kOfVertices[] = {
+    "samples",        "seed",           "max-depth", "glass-shadows", "single-sided", "light-units",
+    "animation",      "animation-time", "variant",   "camera",        "memory",       "threads",
+    "texture-memory", "allow-external", "progress",  "quiet"};
 constexpr std::string_view kOfPixels[] = {
     "size", "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
     "mis",  "transparent",       "camera-file"};
@@ -119,6 +102,55 @@ void addSettingOption(Command app, const Setting& setting, Settings& settings) {
   if (isList(setting)) option.takesAll();
 }
 
+using Names = std::span<const std::string_view>;
+
+// Keys that a command heeds although it does not have their options.
+constexpr std::string_view kKeysOfBake[] = {"render.size",         "camera.file",
+                                            "lighting.lights",     "lighting.mis",
+                                            "render.single_sided", "render.glass_shadows"};
+constexpr std::string_view kKeysOfBasis[] = {"lighting.lights", "lighting.from"};
+constexpr std::string_view kKeysOfBasisVertices[] = {"render.size", "camera.file",
+                                                     "lighting.lights", "lighting.from"};
+// Keys that the command takes out itself where it heeds them.
+constexpr std::string_view kTakenByBake[] = {"render.ao_distance"};
+// The radiance is baked as it is, not as a camera would show it.
+constexpr std::string_view kOfCameras[] = {"output.develop"};
+// The subjects of a comparison, which its own options set.
+constexpr std::string_view kVariedByCompare[] = {"lighting.strategy", "render.samples",
+                                                 "render.time", "render.noise"};
+
+bool isIn(Names names, const Setting& setting) {
+  return std::ranges::count(names, setting.name()) > 0;
+}
+
+Names keysOf(SceneCommand command) {
+  switch (command) {
+    case SceneCommand::Bake:
+      return kKeysOfBake;
+    case SceneCommand::Basis:
+      return kKeysOfBasis;
+    case SceneCommand::BasisVertices:
+      return kKeysOfBasisVertices;
+    default:
+      return {};
+  }
+}
+
+bool heeds(SceneCommand command, const Setting& setting) {
+  if (command == SceneCommand::Bake && isIn(kTakenByBake, setting)) return false;
+  return isOptionOf(command, setting) || isIn(keysOf(command), setting);
+}
+
+// Whether an image of `render` would differ without the setting.
+bool changesImages(const Setting& setting, const SettingValue& value) {
+  if (setting.effect != Effect::Image && setting.effect != Effect::Limit &&
+      !isIn(kOfCameras, setting))
+    return false;
+  const std::string text = toText(value);
+  const bool isDefault = text == setting.fallback && text != "on";  // nothing is on by itself
+  return text != "off" && text != "false" && !isDefault;
+}
+
 }  // namespace
 
 bool isOptionOf(SceneCommand command, const Setting& setting) {
@@ -129,9 +161,9 @@ bool isOptionOf(SceneCommand command, const Setting& setting) {
     case SceneCommand::Bake:
       return isIn(kOfBake);
     case SceneCommand::Basis:
-      return isIn(kOfBasis);
+      return isIn(kOfVertices) || isIn(kOfPixels);
     case SceneCommand::BasisVertices:
-      return isIn(kOfBasis) && !isIn(kOfPixels);
+      return isIn(kOfVertices);
     case SceneCommand::Compare:
       return !setting.renderOnly;
     default:
@@ -144,9 +176,8 @@ bool SceneOptions::showsProgress() const {
 }
 
 void addSceneOptions(Command app, SceneOptions& options, SceneCommand command) {
-  app.addOption("scene", options.scene, "Scene file (.toml) or model (.gltf, .glb)")
-      .typeName("SCENE")
-      .required();
+  app.addRequired("scene", options.scene, "Scene file (.toml) or model (.gltf, .glb)")
+      .typeName("SCENE");
   for (const Setting& setting : settingTable())
     if (!setting.option.empty() && isOptionOf(command, setting))
       addSettingOption(app, setting, options.settings);
@@ -156,6 +187,53 @@ void addSceneOptions(Command app, SceneOptions& options, SceneCommand command) {
 std::string optionText(const Setting& setting, const std::string& value) {
   const std::string argument = value.empty() ? std::string(setting.argument) : value;
   return fmt::format("--{}{}{}", setting.option, argument.empty() ? "" : " ", argument);
+}
+
+void dropUnheeded(SceneFile& scene, SceneCommand command) {
+  std::vector<std::string> names;
+  std::string location;
+  for (const Setting& setting : settingTable()) {
+    const auto* given = scene.settings.find(setting.name());
+    if (!given || heeds(command, setting)) continue;
+    const bool isVaried = command == SceneCommand::Compare && isIn(kVariedByCompare, setting);
+    if (changesImages(setting, given->value) && !isVaried) {
+      if (names.empty()) location = given->location;
+      names.push_back(setting.name());
+    }
+    scene.settings.erase(setting.name());
+  }
+  if (!names.empty())
+    scene.warnings.push_back(fmt::format(
+        "{}: {} {} no effect here; `chromeball render` heeds {}", location, fmt::join(names, ", "),
+        names.size() == 1 ? "has" : "have", names.size() == 1 ? "it" : "them"));
+}
+
+void dropLight(SceneFile& scene, Settings& options) {
+  std::vector<std::string> names;
+  for (const Setting& setting : settingTable()) {
+    const std::string name = setting.name();
+    if (!name.starts_with("probe.") && !name.starts_with("lighting.") && name != "render.max_depth")
+      continue;
+    if (const auto* given = options.find(name)) names.push_back(given->location);
+    scene.settings.erase(name);
+    options.erase(name);
+  }
+  scene.sources.clear();
+  scene.surroundings.reset();
+  scene.probeTurns.clear();
+  scene.lamps = {{.ambient = AmbientLamp{}}};  // black: no scene needs a light of its own
+  if (!names.empty())
+    scene.warnings.push_back(fmt::format("{} {} no effect on occlusion", fmt::join(names, ", "),
+                                         names.size() == 1 ? "has" : "have"));
+}
+
+void checkMemoryWithScene(const LoadedScene& loaded, double bytes, const std::string& what) {
+  const double needed = bytes + estimateMemory(loaded).peak;
+  const double limit = memoryLimit(loaded.description);
+  if (needed > limit)
+    throw InputError(fmt::format("{} {:.3g} GB of memory with all else; the limit is {:.3g} GB",
+                                 what, 1e-9 * needed, 1e-9 * limit),
+                     Remedy{"memory", {}});
 }
 
 }  // namespace chromeball

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "why_black.h"
+// Explains why a rendered image shows nothing.
+#include "render_hints.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +10,6 @@
 
 #include "math/icosphere.h"
 #include "probe/solid_angle.h"
-#include "render_hints.h"
 #include "scene/surface.h"
 #include "trace/accel.h"
 
@@ -223,8 +223,8 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
                                         [](const Material& m) { return m.backLetsLightThrough(); });
   if (!lets && 2 * size_t(behindWalls) > seen.black.size())
     return what +
-           "single-sided walls, which the camera sees through, block the light; "
-           "try --single-sided light, or add lamps with [[light]] in a scene file";
+           "single-sided walls, which the camera sees through, block the light; try --single-sided "
+           "light, or add lamps with [[light]] in a scene file";
   if (black < kNearlyAll) return std::nullopt;
   if (const auto removed = removedLight(loaded); !removed.empty())
     return what + noLightWith(removed);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dusk.h"
+#include "gallery.h"
 
-#include "noise.h"
 #include "probe/mapping.h"
-#include "round_texels.h"
+#include "texels.h"
 
 namespace chromeball::demo {
 namespace {

@@ -53,11 +53,9 @@ void writeFiveShapes(const std::string& path) {
   ground.texture = addTexture(glb, carve({1024, 1024}, top, stone));
   addObject(glb, ground);
   for (const Object& shape : shapes()) addObject(glb, shape);
-  Camera camera =
-      Camera::lookAt({0.35f, 1.15f, 5.4f}, {0.1f, 0.5f, 0}, {0, 1, 0}, glm::radians(24.0f));
-  camera.name = "View";
-  addCamera(glb, camera);
-  writeScene(glb, path);
+  writeScene(glb, "View",
+             Camera::lookAt({0.35f, 1.15f, 5.4f}, {0.1f, 0.5f, 0}, {0, 1, 0}, glm::radians(24.0f)),
+             path);
 }
 
 }  // namespace chromeball::demo

@@ -76,19 +76,17 @@ int addTexture(GltfDocument& document, const Image& color) {
   return document.add("textures", {{"source", image}});
 }
 
-void addCamera(GltfDocument& document, const Camera& camera) {
+void writeScene(GltfDocument& document, const char* cameraName, const Camera& camera,
+                const std::filesystem::path& path) {
   const glm::quat q = glm::quat_cast(mat3(camera.right, camera.up, camera.back));
   const int index =
-      document.add("cameras", {{"name", camera.name},
+      document.add("cameras", {{"name", cameraName},
                                {"type", "perspective"},
                                {"perspective", {{"yfov", camera.fov}, {"znear", 0.01}}}});
-  document.add("nodes", {{"name", camera.name},
+  document.add("nodes", {{"name", cameraName},
                          {"camera", index},
                          {"translation", {camera.position.x, camera.position.y, camera.position.z}},
                          {"rotation", {q.x, q.y, q.z, q.w}}});
-}
-
-void writeScene(GltfDocument& document, const std::filesystem::path& path) {
   std::vector<int> nodes(document.root["nodes"].size());
   std::iota(nodes.begin(), nodes.end(), 0);
   document.add("scenes", {{"nodes", nodes}});

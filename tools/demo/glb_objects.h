@@ -37,9 +37,9 @@ int addMesh(GltfDocument& document, const Object& object);
 void addNode(GltfDocument& document, const std::string& name, int mesh, const Placement& at);
 void addObject(GltfDocument& document, const Object& object);  // a mesh and its node
 int addTexture(GltfDocument& document, const Image& color);    // returns its index
-void addCamera(GltfDocument& document, const Camera& camera);  // by its name
 
-// Makes a scene of all nodes, and writes the file. Throws RunError.
-void writeScene(GltfDocument& document, const std::filesystem::path& path);
+// Adds the camera, makes a scene of all nodes, and writes the file. Throws RunError.
+void writeScene(GltfDocument& document, const char* cameraName, const Camera& camera,
+                const std::filesystem::path& path);
 
 }  // namespace chromeball::demo

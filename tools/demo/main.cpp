@@ -6,48 +6,38 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "dusk.h"
 #include "gallery.h"
 #include "image/io/write_image.h"
-#include "nave.h"
-#include "still_life.h"
-#include "terrace.h"
 
 namespace {
 
 using namespace chromeball::demo;
 using Write = std::function<void(const std::string& path)>;
 
-Write stillLife(Finish finish) {
-  return [finish](const std::string& path) { writeStillLife(path, finish); };
+template <class What>
+Write as(void (*write)(const std::string&, What), What what) {
+  return [=](const std::string& path) { write(path, what); };
 }
 
-Write terrace(Terrace what) {
-  return [what](const std::string& path) { writeTerrace(path, what); };
-}
-
-Write nave(Nave what) {
-  return [what](const std::string& path) { writeNave(path, what); };
-}
-
-const std::map<std::string, Write> kModels = {{"still-life", stillLife(Finish::Demo)},
-                                              {"lambertian", stillLife(Finish::Lambertian)},
-                                              {"conductors", stillLife(Finish::Conductors)},
-                                              {"glass", stillLife(Finish::Glass)},
-                                              {"plastics", stillLife(Finish::Plastics)},
-                                              {"room", stillLife(Finish::Room)},
-                                              {"lamp", stillLife(Finish::Lamp)},
-                                              {"caustics", stillLife(Finish::Caustics)},
-                                              {"fine", stillLife(Finish::Fine)},
-                                              {"terrace", terrace(Terrace::Model)},
-                                              {"terrace-photograph", terrace(Terrace::Photograph)},
-                                              {"terrace-whole", terrace(Terrace::Whole)},
-                                              {"five-shapes", writeFiveShapes},
-                                              {"rnl", writePedestal},
-                                              {"temple", writeTemple},
-                                              {"nave", nave(Nave::Whole)},
-                                              {"nave-room", nave(Nave::Room)},
-                                              {"nave-things", nave(Nave::Things)}};
+const std::map<std::string, Write> kModels = {
+    {"still-life", as(writeStillLife, Finish::Demo)},
+    {"lambertian", as(writeStillLife, Finish::Lambertian)},
+    {"conductors", as(writeStillLife, Finish::Conductors)},
+    {"glass", as(writeStillLife, Finish::Glass)},
+    {"plastics", as(writeStillLife, Finish::Plastics)},
+    {"room", as(writeStillLife, Finish::Room)},
+    {"lamp", as(writeStillLife, Finish::Lamp)},
+    {"caustics", as(writeStillLife, Finish::Caustics)},
+    {"fine", as(writeStillLife, Finish::Fine)},
+    {"terrace", as(writeTerrace, Terrace::Model)},
+    {"terrace-photograph", as(writeTerrace, Terrace::Photograph)},
+    {"terrace-whole", as(writeTerrace, Terrace::Whole)},
+    {"five-shapes", writeFiveShapes},
+    {"rnl", writePedestal},
+    {"temple", writeTemple},
+    {"nave", as(writeNave, Nave::Whole)},
+    {"nave-room", as(writeNave, Nave::Room)},
+    {"nave-things", as(writeNave, Nave::Things)}};
 
 const std::map<std::string, chromeball::Image (*)()> kProbes = {
     {"dusk", [] { return paintDusk(1536); }}, {"noon", [] { return terraceProbe(768); }}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nave.h"
+#include "gallery.h"
 
 #include <array>
 
@@ -121,19 +121,10 @@ Surface vault() {
 }
 
 Surface column() {
-  Surface s = tessellateTurned(48, dvec3(0),
-                               filleted({{0.56, 0},
-                                         {0.56, 0.16},
-                                         {0.46, 0.2},
-                                         {0.5, 0.27},
-                                         {0.4, 0.34},
-                                         {0.415, 1.6},
-                                         {0.345, 3.7},
-                                         {0.38, 3.73},
-                                         {0.35, 3.78},
-                                         {0.48, 4.08},
-                                         {0.5, 4.16}},
-                                        0.02));
+  const Profile corners = {{0.56, 0},    {0.56, 0.16}, {0.46, 0.2},  {0.5, 0.27},
+                           {0.4, 0.34},  {0.415, 1.6}, {0.345, 3.7}, {0.38, 3.73},
+                           {0.35, 3.78}, {0.48, 4.08}, {0.5, 4.16}};
+  Surface s = tessellateTurned(48, dvec3(0), filleted(corners, 0.02));
   addClosedBox(s, {-0.6f, 0, -0.6f}, {0.6f, 0.06f, 0.6f}, kTexture);
   addClosedBox(s, {-0.55f, 4.16f, -0.55f}, {0.55f, kSpring, 0.55f}, kTexture);
   return s;
@@ -230,10 +221,9 @@ void writeNave(const std::string& path, Nave what) {
   addFloor(glb);
   if (what != Nave::Things) addRoom(glb);
   if (what != Nave::Room) addThings(glb);
-  Camera camera = Camera::lookAt({0.7f, 1.7f, 12.8f}, {0, 3.9f, 0}, {0, 1, 0}, glm::radians(52.0f));
-  camera.name = "View";
-  addCamera(glb, camera);
-  writeScene(glb, path);
+  writeScene(glb, "View",
+             Camera::lookAt({0.7f, 1.7f, 12.8f}, {0, 3.9f, 0}, {0, 1, 0}, glm::radians(52.0f)),
+             path);
 }
 
 }  // namespace chromeball::demo

@@ -8,45 +8,20 @@ namespace chromeball::demo {
 namespace {
 
 // Plinth, moulding, drum, moulding and table of the pedestal.
-const Profile kPedestal = filleted({{0, 0},
-                                    {1.5, 0},
-                                    {1.5, 0.22},
-                                    {1.36, 0.24},
-                                    {1.32, 0.36},
-                                    {1.16, 0.42},
-                                    {1.1, 1.0},
-                                    {1.24, 1.1},
-                                    {1.28, 1.2},
-                                    {1.42, 1.22},
-                                    {1.42, 1.36},
-                                    {0, 1.36}},
-                                   0.03, 0.08);
+const Profile kPedestalCorners = {{0, 0},       {1.5, 0},     {1.5, 0.22},  {1.36, 0.24},
+                                  {1.32, 0.36}, {1.16, 0.42}, {1.1, 1.0},   {1.24, 1.1},
+                                  {1.28, 1.2},  {1.42, 1.22}, {1.42, 1.36}, {0, 1.36}};
+const Profile kPedestal = filleted(kPedestalCorners, 0.03, 0.08);
 
 // A stand whose cup's rim, of radius 0.62 of the ball's, is at height 1.
-const Profile kStand = filleted({{0, 0},
-                                 {0.2, 0},
-                                 {0.2, 0.025},
-                                 {0.1, 0.06},
-                                 {0.035, 0.14},
-                                 {0.028, 0.4},
-                                 {0.055, 0.46},
-                                 {0.028, 0.52},
-                                 {0.03, 0.86},
-                                 {0.09, 0.93},
-                                 {0.12, 1.0},
-                                 {0.1, 1.0},
-                                 {0, 0.94}},
-                                0.012);
-
-struct Ball {
-  const char* name;
-  Rgb color;
-  float metallic = 0, roughness = 1, anisotropy = 0, clearcoat = 0;
-  bool glass = false;
-};
+const Profile kStandCorners = {{0, 0},        {0.2, 0},     {0.2, 0.025},  {0.1, 0.06},
+                               {0.035, 0.14}, {0.028, 0.4}, {0.055, 0.46}, {0.028, 0.52},
+                               {0.03, 0.86},  {0.09, 0.93}, {0.12, 1.0},   {0.1, 1.0},
+                               {0, 0.94}};
+const Profile kStand = filleted(kStandCorners, 0.012);
 
 // The balls around the pedestal, by bearing.
-const std::vector<Ball> kBalls = {
+const std::vector<Object> kBalls = {
     {.name = "silver", .color = Rgb(0.95f, 0.93f, 0.88f), .metallic = 1, .roughness = 0},
     {.name = "red plastic", .color = {0.5f, 0.018f, 0.02f}, .roughness = 0.08f},
     {.name = "brushed steel",
@@ -67,15 +42,9 @@ const std::vector<Ball> kBalls = {
     {.name = "black plastic", .color = Rgb(0.012f), .roughness = 0.12f},
 };
 
-Object ballOf(const Ball& ball, dvec3 center, double radius) {
-  return {.name = ball.name,
-          .surface = tessellate(128, 64, demo::ball(center, radius), Uvs::Parameters),
-          .color = ball.color,
-          .metallic = ball.metallic,
-          .roughness = ball.roughness,
-          .glass = ball.glass,
-          .anisotropy = ball.anisotropy,
-          .clearcoat = ball.clearcoat};
+Object ballOf(Object object, dvec3 center, double radius) {
+  object.surface = tessellate(128, 64, ball(center, radius), Uvs::Parameters);
+  return object;
 }
 
 Object carved(GltfDocument& glb, const char* name, int columns, const Profile& profile,
@@ -114,10 +83,9 @@ void writePedestal(const std::string& path) {
   addObject(glb,
             ballOf({.name = "great glass", .color = Rgb(1), .glass = true},
                    dvec3(0, top + 0.5 + std::sqrt(0.52 * 0.52 - 0.288 * 0.288) + 1e-3, 0), 0.52));
-  Camera camera = Camera::lookAt({0.5f, 2.6f, 6.2f}, {0, 1.62f, 0}, {0, 1, 0}, glm::radians(27.0f));
-  camera.name = "View";
-  addCamera(glb, camera);
-  writeScene(glb, path);
+  writeScene(glb, "View",
+             Camera::lookAt({0.5f, 2.6f, 6.2f}, {0, 1.62f, 0}, {0, 1, 0}, glm::radians(27.0f)),
+             path);
 }
 
 }  // namespace chromeball::demo

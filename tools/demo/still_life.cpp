@@ -1,56 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "still_life.h"
+#include "gallery.h"
 
 #include "glb_objects.h"
-#include "noise.h"
+#include "texels.h"
 
 namespace chromeball::demo {
 namespace {
 
 // `fine`: with 0.9 million triangles.
 std::vector<Object> stillLife(bool fine) {
-  const auto tessellate = [fine](int columns, int rows, const Parametrisation& point) {
-    return demo::tessellate(fine ? 255 : columns, fine ? 254 : rows, point);
+  std::vector<Object> objects;
+  const auto add = [&](const char* name, int columns, int rows, const Parametrisation& point,
+                       Rgb color, float metallic, float roughness, float glow = 0) {
+    objects.push_back({name, tessellate(fine ? 255 : columns, fine ? 254 : rows, point), color,
+                       metallic, roughness, glow});
   };
-  return {
-      {"table", tessellate(128, 24, tableTop()), {1, 1, 1}, 0, 0.38f, 0},
-      {"chrome ball",
-       tessellate(112, 56, ball({-0.3, 0.62, -0.1}, 0.62)),
-       {0.95f, 0.95f, 0.95f},
-       1,
-       0.02f,
-       0},
-      {"copper vase",
-       tessellate(72, 90, vase({-1.3, 0, -0.75})),
-       {0.93f, 0.52f, 0.36f},
-       1,
-       0.38f,
-       0},
-      {"golden knot",
-       tessellate(220, 26, knot({0.95, 0.6, -0.6}, 0.42, 0.13, 0.35)),
-       {1, 0.71f, 0.29f},
-       1,
-       0.22f,
-       0},
-      {"white ball",
-       tessellate(88, 44, ball({-1.05, 0.3, 0.62}, 0.3)),
-       {0.8f, 0.8f, 0.78f},
-       0,
-       1,
-       0},
-      {"red cube",
-       tessellate(96, 48, softCube({0.5, 0.27, 0.85}, 0.27, 0.5)),
-       {0.55f, 0.025f, 0.03f},
-       0,
-       0.12f,
-       0},
-      {"lantern",
-       tessellate(64, 32, ball({1.3, 0.17, 0.55}, 0.17)),
-       {0.8f, 0.6f, 0.4f},
-       0,
-       0.6f,
-       1},
-  };
+  add("table", 128, 24, tableTop(), Rgb(1), 0, 0.38f);
+  add("chrome ball", 112, 56, ball({-0.3, 0.62, -0.1}, 0.62), Rgb(0.95f), 1, 0.02f);
+  add("copper vase", 72, 90, vase({-1.3, 0, -0.75}), {0.93f, 0.52f, 0.36f}, 1, 0.38f);
+  add("golden knot", 220, 26, knot({0.95, 0.6, -0.6}, 0.42, 0.13, 0.35), {1, 0.71f, 0.29f}, 1,
+      0.22f);
+  add("white ball", 88, 44, ball({-1.05, 0.3, 0.62}, 0.3), {0.8f, 0.8f, 0.78f}, 0, 1);
+  add("red cube", 96, 48, softCube({0.5, 0.27, 0.85}, 0.27, 0.5), {0.55f, 0.025f, 0.03f}, 0, 0.12f);
+  add("lantern", 64, 32, ball({1.3, 0.17, 0.55}, 0.17), {0.8f, 0.6f, 0.4f}, 0, 0.6f, 1);
+  return objects;
 }
 
 // A mirror and a golden ball on a diffuse ground, which their reflections light.
@@ -146,11 +119,9 @@ void writeStillLife(const std::string& path, Finish finish) {
         finish != Finish::Demo && finish != Finish::Plastics && object.metallic == 0;
     addObject(glb, object);
   }
-  Camera camera =
-      Camera::lookAt({0.3f, 1.3f, 5.4f}, {0.05f, 0.62f, 0}, {0, 1, 0}, glm::radians(29.0f));
-  camera.name = "Front";
-  addCamera(glb, camera);
-  writeScene(glb, path);
+  writeScene(glb, "Front",
+             Camera::lookAt({0.3f, 1.3f, 5.4f}, {0.05f, 0.62f, 0}, {0, 1, 0}, glm::radians(29.0f)),
+             path);
 }
 
 }  // namespace chromeball::demo

@@ -2,7 +2,7 @@
 #include "stone.h"
 
 #include "base/hash.h"
-#include "noise.h"
+#include "texels.h"
 
 namespace chromeball::demo {
 

@@ -6,8 +6,8 @@
 #include "flat.h"
 #include "gallery.h"
 #include "glb_objects.h"
-#include "noise.h"
 #include "stone.h"
+#include "texels.h"
 
 namespace chromeball::demo {
 namespace {
@@ -199,10 +199,9 @@ void writeTemple(const std::string& path) {
                        addTexture(glb, carve({2048, 2048}, hill(), earth))));
   addObject(glb, stone("land", tessellate(128, 64, land(), Uvs::Parameters),
                        addTexture(glb, carve({1024, 512}, land(), earth))));
-  Camera camera = Camera::lookAt({-38, 1.7f, 82}, {-3.2f, 10, 20}, {0, 1, 0}, glm::radians(28.0f));
-  camera.name = "View";
-  addCamera(glb, camera);
-  writeScene(glb, path);
+  writeScene(glb, "View",
+             Camera::lookAt({-38, 1.7f, 82}, {-3.2f, 10, 20}, {0, 1, 0}, glm::radians(28.0f)),
+             path);
 }
 
 }  // namespace chromeball::demo

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "terrace.h"
+#include "gallery.h"
 
 #include "flat.h"
 #include "glb_objects.h"
-#include "noise.h"
 #include "probe/synth.h"
-#include "round_texels.h"
+#include "texels.h"
 
 namespace chromeball::demo {
 namespace {
@@ -81,26 +80,21 @@ std::vector<Object> realThings() {
   return things;
 }
 
-std::vector<Object> objects() {
-  return {
-      {"chrome ball", tessellate(112, 56, ball({0.35, 0.6, -0.75}, 0.6)), Rgb(0.9f), 1, 0.02f},
-      {"golden knot",
-       tessellate(220, 26, knot({-1.15, 0.62, -0.35}, 0.42, 0.13, 0.5)),
-       {1, 0.71f, 0.29f},
-       1,
-       0.22f},
-      {"red cube",
-       tessellate(96, 48, softCube({1.55, 0.32, -0.1}, 0.32, 0.5)),
-       {0.6f, 0.03f, 0.03f},
-       0,
-       0.3f},
-      {"white ball", tessellate(88, 44, ball({2.05, 0.4, -1.9}, 0.4)), Rgb(0.75f), 0, 1},
-      {"blue ball",
-       tessellate(88, 44, ball({-0.25, 0.2, 0.75}, 0.2)),
-       {0.03f, 0.12f, 0.5f},
-       0,
-       0.08f},
+std::vector<Object> syntheticThings() {
+  std::vector<Object> things;
+  const auto add = [&](const char* name, Surface surface, Rgb color, float metallic,
+                       float roughness) {
+    things.push_back({name, std::move(surface), color, metallic, roughness});
   };
+  add("chrome ball", tessellate(112, 56, ball({0.35, 0.6, -0.75}, 0.6)), Rgb(0.9f), 1, 0.02f);
+  add("golden knot", tessellate(220, 26, knot({-1.15, 0.62, -0.35}, 0.42, 0.13, 0.5)),
+      {1, 0.71f, 0.29f}, 1, 0.22f);
+  add("red cube", tessellate(96, 48, softCube({1.55, 0.32, -0.1}, 0.32, 0.5)), {0.6f, 0.03f, 0.03f},
+      0, 0.3f);
+  add("white ball", tessellate(88, 44, ball({2.05, 0.4, -1.9}, 0.4)), Rgb(0.75f), 0, 1);
+  add("blue ball", tessellate(88, 44, ball({-0.25, 0.2, 0.75}, 0.2)), {0.03f, 0.12f, 0.5f}, 0,
+      0.08f);
+  return things;
 }
 
 }  // namespace
@@ -116,12 +110,11 @@ void writeTerrace(const std::string& path, Terrace what) {
   }
   for (const Object& thing : things) addObject(glb, thing);
   if (what != Terrace::Photograph)
-    for (const Object& object : objects()) addObject(glb, object);
-  Camera camera =
-      Camera::lookAt({0.5f, 1.6f, 5.6f}, {0.25f, 0.85f, -0.6f}, {0, 1, 0}, glm::radians(32.0f));
-  camera.name = "View";
-  addCamera(glb, camera);
-  writeScene(glb, path);
+    for (const Object& thing : syntheticThings()) addObject(glb, thing);
+  writeScene(
+      glb, "View",
+      Camera::lookAt({0.5f, 1.6f, 5.6f}, {0.25f, 0.85f, -0.6f}, {0, 1, 0}, glm::radians(32.0f)),
+      path);
 }
 
 Image terraceProbe(int width) {

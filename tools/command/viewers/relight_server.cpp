@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewers/relight_server.h"
 
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "base/error.h"
 #include "base/json.h"
 #include "base/json_text.h"
+#include "base/parallel.h"
 #include "front/arguments.h"
 #include "image/image.h"
 #include "image/io/write_image.h"
+#include "image/tonemap.h"
+#include "messages.h"
+#include "relight/stage/light_stage.h"
+#include "relight/stage/relit_stage.h"
 #include "viewers/local_server.h"
 
 namespace chromeball {
@@ -14,9 +24,55 @@ namespace chromeball {
 extern const char* const kRelightPage;
 extern const char* const kRelightScript;
 
-class RelightServer::Server {
+namespace {
+
+constexpr int kMapWidth = 512;
+
+Image reduced(const Image& map) {
+  if (map.width <= kMapWidth) return map;
+  const int height = std::max(1, int(std::lround(double(map.height) * kMapWidth / map.width)));
+  return resampled(map, kMapWidth, height);
+}
+
+// A light stage under probes that turn, fast enough to follow a hand.
+class RelightView {
  public:
-  Server(int port, const RelightView& view) : view_(view) {
+  // Maps wider than 512 texels are reduced to that.
+  RelightView(LightStage stage, std::vector<NamedProbe> probes)
+      : stage_(std::move(stage)), probes_(std::move(probes)) {
+    for (NamedProbe& probe : probes_) probe.map = reduced(probe.map);
+  }
+
+  const LightStage& stage() const { return stage_; }
+  const std::vector<NamedProbe>& probes() const { return probes_; }
+
+  // The pixels for a screen, four bytes each: R, G, B, 255. Thread-safe.
+  std::vector<uint8_t> picture(size_t probe, const Rotation& rotation,
+                               const DisplayTransform& transform) const {
+    Image sum = weightedSum(stage_.elements,
+                            lightWeights(stage_.basis, probes_[probe].map, rotation, kMapWidth));
+    addOwnLight(sum, stage_.own);
+    std::vector<uint8_t> bytes(4 * size_t(sum.width) * size_t(sum.height));
+    forRows(sum.width, sum.height, 16, [&](int y) {
+      uint8_t* to = bytes.data() + 4 * size_t(y) * size_t(sum.width);
+      for (int x = 0; x < sum.width; ++x) {
+        const Rgb shown = display(transform, sum.rgb(x, y));
+        for (int c = 0; c < 3; ++c) *to++ = uint8_t(std::lround(255 * linearToSrgb(shown[c])));
+        *to++ = 255;
+      }
+    });
+    return bytes;
+  }
+
+ private:
+  LightStage stage_;
+  std::vector<NamedProbe> probes_;
+};
+
+class RelightServer {
+ public:
+  // `view` must outlive this.
+  RelightServer(int port, const RelightView& view) : view_(view) {
     keepLocal(http_);
     addRoutes();
     port_ = bindLocal(http_, port);
@@ -90,15 +146,13 @@ class RelightServer::Server {
   int port_ = -1;
 };
 
-RelightServer::RelightServer(int port, const RelightView& view)
-    : server_(std::make_unique<Server>(port, view)) {}
+}  // namespace
 
-RelightServer::~RelightServer() = default;
-
-std::string RelightServer::address() const {
-  return fmt::format("http://127.0.0.1:{}/", server_->port());
+void serveRelight(int port, LightStage stage, std::vector<NamedProbe> probes) {
+  const RelightView view(std::move(stage), std::move(probes));
+  RelightServer server(port, view);
+  note("preview at http://127.0.0.1:{}/; Ctrl-C or its button ends it", server.port());
+  server.run();
 }
-
-void RelightServer::run() { server_->run(); }
 
 }  // namespace chromeball

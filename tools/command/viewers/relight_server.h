@@ -3,33 +3,29 @@
 // follows.
 #pragma once
 
-#include <memory>
 #include <string>
+#include <vector>
 
-#include "viewers/relight_view.h"
+#include "image/image.h"
+#include "relight/stage/light_stage.h"
 
 namespace chromeball {
+
+struct NamedProbe {
+  std::string name;
+  Image map;  // lat-long
+};
 
 // Serves http://127.0.0.1:PORT/ to this machine alone (local_server.h).
 //
 //   GET /               the page
 //   GET /stage.json     the picture's size, the names of the probes
 //   GET /picture?probe=INDEX&yaw=DEG&pitch=DEG&roll=DEG&exposure=STOPS&tonemap=NAME
-//                       RelightView::picture()
+//                       the pixels for a screen, four bytes each: R, G, B, 255
 //   GET /probe.png?probe=INDEX      its map, for display
-//   POST /stop          ends run()
-class RelightServer {
- public:
-  // `port` 0: any that is free. Throws InputError if it cannot be opened. `view` must outlive this.
-  RelightServer(int port, const RelightView& view);
-  ~RelightServer();
-
-  std::string address() const;
-  void run();
-
- private:
-  class Server;
-  std::unique_ptr<Server> server_;
-};
+//   POST /stop          ends the command
+//
+// `port` 0: any that is free; a note names it. Throws InputError if it cannot be opened.
+void serveRelight(int port, LightStage stage, std::vector<NamedProbe> probes);
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "write_probe.h"
+#include "image_files.h"
 
 #include <fmt/format.h>
 
@@ -21,22 +21,52 @@ void warnOfLostMapping(const std::string& file, const Image& map, Mapping mappin
   if (detected.mapping == mapping) return;
   // A scene file takes lenses only from files that name them.
   const bool isLens = mapping.kind() == Mapping::FisheyeDisc;
-  warn(fmt::format(
-      "{}: has no place for its mapping, {}, and will be taken for {}: give `--from {}`{} where it "
-      "is read, or write an .exr or .hdr",
+  warn(
+      "{}: has no place for its mapping, {}, and will be taken for {}: give `--from "
+      "{}`{} where it is read, or write an .exr or .hdr",
       file, mappingName(mapping), mappingName(detected.mapping), mappingName(mapping),
-      isLens ? "" : " or `[probe] mapping`"));
+      isLens ? "" : " or `[probe] mapping`");
 }
 
 void warnOfClipping(const std::string& file, const Image& map) {
   const auto clipped = std::count_if(map.texels.begin(), map.texels.end(),
                                      [](float channel) { return channel > 1; });
   if (clipped > 0)
-    warn(fmt::format("{}: {:.3g}% of the channels are above 1, and clipped; an .exr holds them",
-                     file, 100. * double(clipped) / double(map.texels.size())));
+    warn("{}: {:.3g}% of the channels are above 1, and clipped; an .exr holds them", file,
+         100. * double(clipped) / double(map.texels.size()));
 }
 
 }  // namespace
+
+ImageFile openImageFile(const std::filesystem::path& path, IntegerTexels integers) {
+  ImageFile file = readImageFile(path, integers);
+  print(file.messages);
+  return file;
+}
+
+Image openImage(const std::filesystem::path& path, IntegerTexels integers) {
+  return colorOf(openImageFile(path, integers), path);
+}
+
+Metadata keptMetadata(const ImageFile& file, const std::string& in, const std::string& out) {
+  Metadata kept = file.metadata;
+  const auto envmap = kept.find(kEnvmapAttribute);
+  if (envmap == kept.end()) return kept;
+  const auto* kind = std::get_if<std::string>(&envmap->second);
+  if (kind && *kind == kEnvmapLatLong && lowerExtension(out) != ".png")
+    warn(
+        "{}: its `envmap` attribute, which puts +Z in the centre, is not kept: as a "
+        "probe, {} needs a rotation of 180 degrees",
+        in, out);
+  kept.erase(envmap);
+  return kept;
+}
+
+LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option) {
+  LoadedProbe probe = loadProbe(path, mapping, option);
+  print(probeMessages(probe, path));
+  return probe;
+}
 
 ImageSize checkedSize(const std::string& file, const ImageSize& size, double copies) {
   checkImageMemory(file, size.width, size.height, 3, sizeof(float), copies);
@@ -48,9 +78,9 @@ void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
   if (kind == ".hdr") {
     checkWritable(file);
     writeRadianceHdr(file, map, {{kMappingAttribute, name}});
-    return print(lostLight(file, map), false);
+    return print(lostLight(file, map));
   }
-  print(writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, name}}}), false);
+  print(writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, name}}}));
   if (kind == ".exr") return;
   warnOfLostMapping(file, map, mapping);
   if (kind == ".png") warnOfClipping(file, map);

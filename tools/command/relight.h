@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// chromeball relight STAGE.exr --probe P -o OUT.exr: pictures of a light stage, or of photographs.
+// chromeball relight: the options, and what is made: pictures of a light stage or of photographs, a
+// page, and the vertex colours of a model with transfer.
 #pragma once
 
 #include <optional>
@@ -23,8 +24,8 @@ struct RelightOptions {
   std::string pixel;  // of the reflectance function
   std::string out, tone = "none";
   float exposure = 0;
-  std::optional<double> white;  // of a model
-  std::string view;             // of a model with glossy transfer
+  std::optional<double> white;  // of a model: the light that its white stands for
+  std::string view;             // "X,Y,Z", metres: the eye, of a model with glossy transfer
   bool allowsExternal = false, quiet = false;
   std::string preview;           // the port; empty: none
   std::optional<double> memory;  // GB
@@ -37,9 +38,10 @@ struct RelightOptions {
   const std::string& source() const { return isOfPhotographs() ? images : stage; }
 };
 
-// These throw InputError.
+// These throw InputError, and RunError.
 void runRelitPicture(const RelightOptions& a);
 void runReflectanceFunction(const RelightOptions& a);
 void runRelightPreview(const RelightOptions& a);
+void runRelightModel(const RelightOptions& a);
 
 }  // namespace chromeball

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "light_options.h"
+#include "probe_options.h"
 
 #include <charconv>
 
 #include "base/error.h"
 #include "base/text.h"
-#include "input_image.h"
+#include "front/arguments.h"
+#include "image_files.h"
 #include "messages.h"
 #include "probe/edit.h"
 #include "probe/solid_angle.h"
@@ -23,8 +24,7 @@ LoadedProbe LightsProbe::loadWithFile() const {
   if (mask == "below-horizon") {
     replaceBelowHorizon(probe.latLong, Rgb(0));
     if (probe.maximum > 0 && meanRadiance(probe.latLong) == glm::dvec3(0))
-      warn(fmt::format("--probe-mask: {} leaves no light; {} is black above the horizon", mask,
-                       file));
+      warn("--probe-mask: {} leaves no light; {} is black above the horizon", mask, file);
   }
   return probe;
 }
@@ -36,6 +36,19 @@ uint64_t parseSeed(const std::string& text) {
   if (error != std::errc() || rest != end)
     throwInput("--seed: `{}` should be a whole number from 0 to 2^64 - 1", text);
   return seed;
+}
+
+void addRotationOption(Command command, Rotation& rotation, const std::string& more) {
+  command
+      .addParsedOption(
+          "--rotation",
+          [&rotation](const Command::Words& words) {
+            rotation = parseRotation(words.front(), "--rotation");
+          },
+          "YAW[,PITCH,ROLL] in degrees, or a quaternion X,Y,Z,W: turn the environment as render's "
+          "--probe-rotation" +
+              more)
+      .typeName("TEXT");
 }
 
 }  // namespace chromeball

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that commands about lights share: the number of faces of an icosphere, and the part of
-// the probe that gives no light.
+// Options that commands about probes and lights share: the rotation, the number of faces of an
+// icosphere, and the part of the probe that gives no light.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 #include "base/error.h"
+#include "command.h"
+#include "front/arguments.h"
 #include "probe/load.h"
 
 namespace chromeball {
-
-inline constexpr const char* kNormalsHelp =
-    "number of surface orientations to compare: 20 times a power of 4, up to 1310720";
 
 inline constexpr const char* kMaskHelp = "directions that give no light: none or below-horizon";
 
@@ -42,5 +41,9 @@ inline int subdivisionsFor(int normals) {
 
 // A seed from its text: std::stoull and the like take -1 for 2^64 - 1. Throws InputError.
 uint64_t parseSeed(const std::string& text);
+
+// --rotation. `rotation` is set when the command line is parsed; it must outlive the command.
+// `more` ends the sentence of the help.
+void addRotationOption(Command command, Rotation& rotation, const std::string& more = "");
 
 }  // namespace chromeball

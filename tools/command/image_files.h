@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the images of a command, and prints their readers' messages: channels chosen, fields of the
-// header applied, colours converted.
+// header applied, colours converted. Writes the map that a command about probes makes.
 #pragma once
 
 #include <string>
 #include <string_view>
 
+#include "image/image.h"
 #include "image/io/read_image.h"
 #include "probe/load.h"
+#include "probe/mapping.h"
 
 namespace chromeball {
 
@@ -20,5 +22,17 @@ Image openImage(const std::filesystem::path& path, IntegerTexels integers = Inte
 Metadata keptMetadata(const ImageFile& file, const std::string& in, const std::string& out);
 
 LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option);
+
+// Returns the size of a map to make for `file`. Throws InputError if `copies` of it, including
+// those for writing, take more memory than the process may use.
+ImageSize checkedSize(const std::string& file, const ImageSize& size, double copies = 3);
+
+// Copies of a map of irradiance: the direction and the horizon of each texel are kept.
+inline constexpr double kIrradianceCopies = 8;
+
+// The same as writeImage(); an .exr or .hdr stores the name of its mapping, which loadProbe()
+// reads. Warns of a mapping that other files lose, of channels above 1 that a .png clips, and of
+// channels below 0 that become 0 in a .png and an .hdr.
+void writeProbe(const std::string& file, const Image& map, Mapping mapping = Mapping::LatLong);
 
 }  // namespace chromeball
