@@ -39,9 +39,9 @@ std::string describeRange(const Range& range, bool whole) {
 }
 
 void checkChoice(const Setting& setting, const std::string& name, const std::string& location) {
-  const std::vector<std::string_view> known = setting.choices();
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throwInput("{}: `{}` is not known; {}", location, printableName(name), didYouMean(name, known));
+  if (std::ranges::count(setting.choices, name) == 0)
+    throwInput("{}: `{}` is not known; {}", location, printableName(name),
+               didYouMean(name, setting.choices));
 }
 
 // Splits words at commas; each word may contain several names.
@@ -96,7 +96,7 @@ void checkNumbers(const Setting& setting, const SettingValue& value, const std::
 }  // namespace
 
 std::string Setting::name() const {
-  if (key.empty()) return std::string(option);
+  if (key.empty()) return option;
   return section.empty() ? std::string(key) : fmt::format("{}.{}", section, key);
 }
 
@@ -112,9 +112,9 @@ std::string expected(const Setting& s) {
     case Type::Factor:
       return "\"off\" or a factor, 0 or more";
     case Type::Choice:
-      return fmt::format("one of {}", fmt::join(s.choices(), ", "));
+      return fmt::format("one of {}", fmt::join(s.choices, ", "));
     case Type::Choices:
-      return fmt::format("one or several of {}", fmt::join(s.choices(), ", "));
+      return fmt::format("one or several of {}", fmt::join(s.choices, ", "));
     case Type::Name:
       return "a string";
     case Type::File:

@@ -53,12 +53,14 @@ enum class Effect {
 };
 
 struct Setting {
-  std::string_view section;        // of the scene file; empty: none
-  std::string_view key;            // empty: the command line only
-  std::string_view option;         // without dashes; empty: the scene file only
-  char letter = 0;                 // short form of the option
-  std::string_view argument = {};  // name of the option's argument in --help: "N", "SECONDS"
-  std::string_view bare = {};      // the value of an option without "=ARGUMENT"; empty: not allowed
+  std::string_view section;  // of the scene file; empty: none
+  std::string_view key;      // empty: the command line only
+  std::string option;        // without dashes; empty: the scene file only
+  char letter = 0;           // short form of the option
+  // The name of the option's argument in --help: "SECONDS"; a row that gives none has "N" for an
+  // Integer, "NAME" for a Choice.
+  std::string_view argument = {};
+  std::string_view bare = {};  // the value of an option without "=ARGUMENT"; empty: not allowed
   SettingType type;
   std::string_view form = {};       // of a Compound or of Numbers: "three numbers"
   std::vector<size_t> counts = {};  // of Numbers: how many there may be
@@ -66,7 +68,7 @@ struct Setting {
   std::string_view unit = {};
   std::string fallback = {};     // the default, in the syntax of the option; empty: none
   std::string_view absent = {};  // if there is no default: describes the behaviour without a value
-  std::vector<std::string_view> (*choices)() = nullptr;  // listed also for a Name
+  std::vector<std::string_view> choices = {};  // listed also for a Name
   std::string_view help;
   Effect effect = Effect::Image;
   bool renderOnly = false;  // not an option of `chromeball compare`, which varies or ignores it

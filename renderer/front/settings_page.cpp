@@ -78,7 +78,7 @@ std::string typeText(const Setting& s) {
 }
 
 std::string rangeText(const Setting& s) {
-  if (s.choices) return fmt::format("`{}`", fmt::join(s.choices(), "`, `"));
+  if (!s.choices.empty()) return fmt::format("`{}`", fmt::join(s.choices, "`, `"));
   const Range& r = s.range;
   const bool hasMin = std::isfinite(r.min), hasMax = std::isfinite(r.max);
   if (hasMin && hasMax)

@@ -153,7 +153,7 @@ Entry Section::required(std::string_view key) const {
   const Entry entry = (*this)[key];
   if (!entry)
     failAt(location(), "{} has no `{}`{}", heading(), key,
-           entry.setting->choices ? ": " + expected(*entry.setting) : "");
+           entry.setting->choices.empty() ? "" : ": " + expected(*entry.setting));
   return entry;
 }
 
