@@ -16,6 +16,22 @@ namespace {
 
 using Type = SettingType;
 
+constexpr SettingTypeInfo kTypeInfos[] = {
+    {"flag", "true or false", 0},
+    {"integer", "", 1},
+    {"number", "", 2},
+    {"number or `\"off\"`", "\"off\" or a factor, 0 or more", 2},
+    {"", "", 3},
+    {"name", "", 4},
+    {"name, or an array", "", 5},
+    {"string", "a string", 4},
+    {"file", "a file name", 4},
+    {"file, or an array", "a file name", 5},
+    {"`[width, height]`", "[width, height]", 6},
+    {"", "", std::variant_npos},
+};
+static_assert(std::size(kTypeInfos) == size_t(Type::Compound) + 1);
+
 std::string describeRange(const Range& range, bool whole) {
   const auto number = [](double x) {
     return x == std::floor(x) && std::abs(x) < 1e15 ? fmt::format("{:.0f}", x)
@@ -78,19 +94,13 @@ std::vector<double> parseList(const Setting& setting, const std::string& text,
   return numbers;
 }
 
-// One of several numbers.
-std::string expectedElement(Setting setting) {
-  setting.type = Type::Number;
-  return expected(setting);
-}
-
 void checkNumbers(const Setting& setting, const SettingValue& value, const std::string& location) {
   const auto& numbers = std::get<std::vector<double>>(value);
   if (std::ranges::count(setting.counts, numbers.size()) == 0)
     refuse(setting, toText(value), location);
   for (const double x : numbers)
     if (!(std::abs(x) <= FLT_MAX) || !setting.range.contains(x))
-      throwInput("{}: `{}` is not {}", location, x, expectedElement(setting));
+      throwInput("{}: `{}` is not {}", location, x, expectedNumber(setting, setting.range));
 }
 
 }  // namespace
@@ -100,33 +110,24 @@ std::string Setting::name() const {
   return section.empty() ? std::string(key) : fmt::format("{}.{}", section, key);
 }
 
+const SettingTypeInfo& infoOf(SettingType type) { return kTypeInfos[size_t(type)]; }
+
 std::string expected(const Setting& s) {
+  if (const std::string_view always = infoOf(s.type).expected; !always.empty())
+    return std::string(always);
   const std::string unit = s.unit.empty() ? "" : fmt::format(" ({})", s.unit);
-  switch (s.type) {
-    case Type::Flag:
-      return "true or false";
-    case Type::Integer:
-      return describeRange(s.range, true) + unit;
-    case Type::Number:
-      return describeRange(s.range, false) + unit;
-    case Type::Factor:
-      return "\"off\" or a factor, 0 or more";
-    case Type::Choice:
-      return fmt::format("one of {}", fmt::join(s.choices, ", "));
-    case Type::Choices:
-      return fmt::format("one or several of {}", fmt::join(s.choices, ", "));
-    case Type::Name:
-      return "a string";
-    case Type::File:
-    case Type::Files:
-      return "a file name";
-    case Type::Size:
-      return "[width, height]";
-    case Type::Numbers:
-    case Type::Compound:
-      break;
-  }
+  if (s.type == Type::Integer || s.type == Type::Number)
+    return describeRange(s.range, s.type == Type::Integer) + unit;
+  if (s.type == Type::Choice) return fmt::format("one of {}", fmt::join(s.choices, ", "));
+  if (s.type == Type::Choices)
+    return fmt::format("one or several of {}", fmt::join(s.choices, ", "));
   return std::string(s.form);
+}
+
+std::string expectedNumber(Setting setting, const Range& range) {
+  if (setting.type == Type::Compound || setting.type == Type::Numbers) setting.type = Type::Number;
+  setting.range = range;
+  return expected(setting);
 }
 
 SettingValue parseSetting(const Setting& setting, const std::vector<std::string>& words,
@@ -168,47 +169,34 @@ SettingValue parseSetting(const Setting& setting, const std::vector<std::string>
 }
 
 void checkSetting(const Setting& setting, const SettingValue& value, const std::string& location) {
-  const auto refuseNumber = [&](auto x) { refuse(setting, fmt::format("{}", x), location); };
-  const auto requireType = [&](bool matches) {
-    if (!matches) refuse(setting, toText(value), location);
-  };
+  if (setting.type == Type::Compound)
+    throwInput("{}: `{}` belongs into a scene file", location, setting.name());
+  if (value.index() != infoOf(setting.type).alternative) refuse(setting, toText(value), location);
   switch (setting.type) {
-    case Type::Flag:
-      return requireType(std::holds_alternative<bool>(value));
     case Type::Integer:
-      requireType(std::holds_alternative<uint64_t>(value));
-      if (const uint64_t x = std::get<uint64_t>(value); !setting.range.contains(double(x)))
-        refuseNumber(x);
+      if (!setting.range.contains(double(std::get<uint64_t>(value))))
+        refuse(setting, toText(value), location);
       return;
     case Type::Number:
     case Type::Factor:
-      requireType(std::holds_alternative<double>(value));
       if (const double x = std::get<double>(value);
           !(std::abs(x) <= FLT_MAX) || !setting.range.contains(x))
-        refuseNumber(x);
+        refuse(setting, toText(value), location);
       return;
     case Type::Numbers:
-      requireType(std::holds_alternative<std::vector<double>>(value));
       return checkNumbers(setting, value, location);
     case Type::Choice:
-      requireType(std::holds_alternative<std::string>(value));
       return checkChoice(setting, std::get<std::string>(value), location);
     case Type::Choices:
-      requireType(std::holds_alternative<std::vector<std::string>>(value));
       for (const std::string& name : std::get<std::vector<std::string>>(value))
         checkChoice(setting, name, location);
       return;
-    case Type::Files:
-      return requireType(std::holds_alternative<std::vector<std::string>>(value));
     case Type::Name:
     case Type::File:
-      requireType(std::holds_alternative<std::string>(value));
       if (std::get<std::string>(value).empty()) throwInput("{}: is empty", location);
       return;
-    case Type::Size:
-      return requireType(std::holds_alternative<ImageSize>(value));
-    case Type::Compound:
-      throwInput("{}: `{}` belongs into a scene file", location, setting.name());
+    default:
+      return;
   }
 }
 

@@ -33,6 +33,14 @@ enum class SettingType {
   Compound,  // a structured key with its own reader; `form` describes it
 };
 
+// What the settings of a type have in common.
+struct SettingTypeInfo {
+  std::string_view form;      // in the reference page; empty: the setting's own
+  std::string_view expected;  // describes valid values; empty: these depend on the setting
+  size_t alternative;         // of SettingValue
+};
+const SettingTypeInfo& infoOf(SettingType type);
+
 // The range of an Integer, of a Number, or of the elements of Numbers or a Compound.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
@@ -79,6 +87,8 @@ struct Setting {
 
 // Describes valid values: "a whole number from 1 to 20", "a finite number above 0 (seconds)".
 std::string expected(const Setting& setting);
+// The same for one number of the setting, in another range.
+std::string expectedNumber(Setting setting, const Range& range);
 
 // The value of an option's arguments (none for a flag). Throws InputError, begun by `location`.
 SettingValue parseSetting(const Setting& setting, const std::vector<std::string>& words,

@@ -24,14 +24,6 @@ std::string describe(const toml::node& node) {
   return "a date or time";
 }
 
-// Describes valid numbers of the setting.
-std::string expectedNumber(Setting setting, const Range& range) {
-  if (setting.type == SettingType::Compound || setting.type == SettingType::Numbers)
-    setting.type = SettingType::Number;
-  setting.range = range;
-  return expected(setting);
-}
-
 }  // namespace
 
 void Entry::mustBe(std::string_view what) const {
