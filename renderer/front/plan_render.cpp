@@ -2,10 +2,10 @@
 #include "front/plan_render.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "composite/layers.h"
 #include "description/capabilities.h"
 #include "front/arguments.h"
@@ -30,16 +30,12 @@ Guiding guidingNamed(const std::string& name) {
 // Whole numbers up to a million, with this character between; nullopt for any other text.
 std::optional<std::vector<uint32_t>> splitNumbers(const std::string& text, char between) {
   std::vector<uint32_t> numbers;
-  const char *at = text.data(), *end = at + text.size();
-  for (;; ++at) {
-    uint32_t number = 0;
-    const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc() || number > 1'000'000) return {};
-    numbers.push_back(number);
-    at = next;
-    if (at == end) return numbers;
-    if (*at != between) return {};
+  for (const std::string_view part : splitAt(text, between)) {
+    const bool isWhole = part.find_first_not_of("0123456789") == std::string_view::npos &&
+                         toNumber(part, numbers.emplace_back());
+    if (!isWhole || numbers.back() > 1'000'000) return {};
   }
+  return numbers;
 }
 
 SingleSided singleSidedNamed(const std::string& name) {

@@ -64,11 +64,8 @@ void checkChoice(const Setting& setting, const std::string& name, const std::str
 std::vector<std::string> split(const std::vector<std::string>& words) {
   std::vector<std::string> names;
   for (const std::string& word : words)
-    for (size_t begin = 0; begin <= word.size();) {
-      const size_t end = std::min(word.find(',', begin), word.size());
-      if (end > begin) names.push_back(word.substr(begin, end - begin));
-      begin = end + 1;
-    }
+    for (const std::string_view name : splitAt(word, ','))
+      if (!name.empty()) names.emplace_back(name);
   return names;
 }
 
@@ -85,12 +82,8 @@ double parseNumber(const Setting& setting, std::string text, const std::string& 
 std::vector<double> parseList(const Setting& setting, const std::string& text,
                               const std::string& location) {
   std::vector<double> numbers;
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    if (!toNumber(std::string_view(text).substr(begin, end - begin), numbers.emplace_back()))
-      refuse(setting, text, location);
-    begin = end + 1;
-  }
+  for (const std::string_view part : splitAt(text, ','))
+    if (!toNumber(part, numbers.emplace_back())) refuse(setting, text, location);
   return numbers;
 }
 
