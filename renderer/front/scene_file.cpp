@@ -160,8 +160,7 @@ void applyToModels(const Settings& over, SceneFile& file) {
       file.origins.set(elementName("models", i) + ".choice.variant",
                        over.location("model.variant"));
     }
-    choice.lightUnits = parseLightUnits(
-        {all.get<std::string>("lighting.light_units"), all.location("lighting.light_units")});
+    choice.lightUnits = all.choice<LightUnits>("lighting.light_units");
     if (all.get<bool>("allow-external")) choice.external = ExternalFiles::Allow;
   }
 }

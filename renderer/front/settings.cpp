@@ -169,6 +169,11 @@ std::optional<SettingValue> Settings::value(std::string_view name) const {
   return hasDefault ? std::optional(defaultOf(name)) : std::nullopt;
 }
 
+int Settings::indexOfChoice(std::string_view name) const {
+  const auto& choices = settingNamed(name).choices;
+  return int(std::ranges::find(choices, get<std::string>(name)) - choices.begin());
+}
+
 std::string Settings::location(std::string_view name) const {
   const Given* given = find(name);
   return given && !given->location.empty() ? given->location : std::string(name);

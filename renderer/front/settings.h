@@ -95,6 +95,11 @@ class Settings {
     const Given* given = find(name);
     return as<T>(name, given ? given->value : defaultOf(name));
   }
+  // The enumerator (or false, true) of a Choice, whose row has the choices in the same order.
+  template <class Enumerator>
+  Enumerator choice(std::string_view name) const {
+    return Enumerator(indexOfChoice(name));
+  }
   // The value given, else the default, else nothing.
   std::optional<SettingValue> value(std::string_view name) const;
   template <class T>
@@ -110,6 +115,7 @@ class Settings {
     throw std::logic_error("setting " + std::string(name) + " has another type");
   }
   static SettingValue defaultOf(std::string_view name);
+  int indexOfChoice(std::string_view name) const;
 
   std::map<std::string, Given, std::less<>> given_;
 };
