@@ -130,9 +130,8 @@ Messages Sequence::messages() const {
   for (size_t i = 0; !numbers_.empty() && i < scene_.models.size(); ++i)
     if (const std::string time = elementName("models", i) + ".choice.animation.seconds";
         scene_.origins.has(time))
-      messages.push_back({Message::Kind::Warning,
-                          fmt::format("{}: `time` has no effect: frames have times of their own",
-                                      scene_.origins.of(time))});
+      addWarning(messages, "{}: `time` has no effect: frames have times of their own",
+                 scene_.origins.of(time));
   return messages;
 }
 

@@ -91,10 +91,9 @@ void CheckpointControl::noteSamples(const RenderState& restored) {
   const uint32_t samples = std::max(restored.done, pass),
                  asked = loaded_.description.settings.samples;
   if (samples > asked)
-    messages_.push_back({Message::Kind::Note,
-                         fmt::format("{} has {} samples per pixel, more than the {} asked for; the "
-                                     "image keeps them",
-                                     *path_, samples, asked)});
+    addNote(messages_,
+            "{} has {} samples per pixel, more than the {} asked for; the image keeps them", *path_,
+            samples, asked);
 }
 
 void CheckpointControl::endPass(const RenderState& state) {

@@ -107,12 +107,10 @@ FinishedRender renderLoaded(const LoadedScene& loaded, const PreparedScene& prep
   result.render.interrupted |= description.settings.denoisesAtEnd() && !result.denoised;
   result.seconds = watch.lap();
   if (result.render.overrun > 0)
-    result.messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format(
-             "{}: the first pass, which is always completed, took {:.2g} s, longer than {:g}",
-             description.origins.of("render.time"), result.render.overrun,
-             *description.settings.timeLimit)});
+    addWarning(result.messages,
+               "{}: the first pass, which is always completed, took {:.2g} s, longer than {:g}",
+               description.origins.of("render.time"), result.render.overrun,
+               *description.settings.timeLimit);
   return result;
 }
 

@@ -173,9 +173,7 @@ Messages checkOutputs(const RenderDescription& description) {
   Messages messages;
   const auto warn = [&](std::string_view setting, const std::string& why) {
     if (description.origins.has(setting))
-      messages.push_back(
-          {Message::Kind::Warning,
-           fmt::format("{} has no effect: {}", namedOrigin(description, setting), why)});
+      addWarning(messages, "{} has no effect: {}", namedOrigin(description, setting), why);
   };
   for (const char* name : {"tonemap", "exposure", "output.develop"})
     if (!has(".png")) warn(name, fmt::format("it is for .png; {} holds radiance", files.front()));
