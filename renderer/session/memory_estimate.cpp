@@ -88,14 +88,9 @@ std::string inWords(const MemoryEstimate& e) {
 }
 
 void checkMemory(const LoadedScene& loaded) {
-  const RenderDescription& description = loaded.description;
   const MemoryEstimate estimate = estimateMemory(loaded);
-  const double limit = memoryLimit(description);
-  if (estimate.peak > limit)
-    throw InputError(
-        fmt::format("{}: takes {:.3g} GB of memory ({}); the limit is {:.3g} GB", description.path,
-                    1e-9 * estimate.peak, inWords(estimate), 1e-9 * limit),
-        Remedy{"memory", {}});
+  checkMemory(loaded.description, estimate.peak, "{}: takes {:.3g} GB of memory ({})",
+              loaded.description.path, 1e-9 * estimate.peak, inWords(estimate));
 }
 
 namespace {

@@ -3,6 +3,7 @@
 // tables of the probe and the images are allocated.
 #pragma once
 
+#include "base/error.h"
 #include "base/memory.h"
 #include "render/render.h"
 #include "session/load_scene.h"
@@ -23,6 +24,18 @@ MemoryEstimate estimateMemory(const LoadedScene& loaded);
 
 // The description's limit: `--memory`, or memoryBudget().
 double memoryLimit(const RenderDescription& description);
+
+// Throws InputError "WHAT; the limit is X GB" if so many bytes exceed the limit; `format` says
+// what.
+template <class... Args>
+void checkMemory(const RenderDescription& description, double bytes,
+                 fmt::format_string<Args...> format, Args&&... args) {
+  const double limit = memoryLimit(description);
+  if (bytes > limit)
+    throw InputError(fmt::format("{}; the limit is {:.3g} GB",
+                                 fmt::format(format, std::forward<Args>(args)...), 1e-9 * limit),
+                     Remedy{"memory", {}});
+}
 
 // The film, layers, output images and snapshots of a description of known size.
 double imageBytes(const RenderDescription& description);

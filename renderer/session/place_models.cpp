@@ -132,15 +132,11 @@ void chooseSize(RenderDescription& description, const Scene& scene) {
     if (crop->x + crop->width > settings.width || crop->y + crop->height > settings.height)
       throwInput("{}: is not within the image of {}x{} pixels", description.origins.of("crop"),
                  settings.width, settings.height);
-  const double needed = imageBytes(description), budget = memoryLimit(description);
-  if (needed > budget)
-    throw InputError(
-        fmt::format("{}an image of {}x{} takes {:.3g} GB of memory; the limit is {:.3g} GB",
-                    description.origins.has("render.size")
-                        ? description.origins.of("render.size") + ": "
-                        : "",
-                    settings.width, settings.height, needed * 1e-9, budget * 1e-9),
-        Remedy{"memory", {}});
+  const double needed = imageBytes(description);
+  const Origins& origins = description.origins;
+  checkMemory(description, needed, "{}an image of {}x{} takes {:.3g} GB of memory",
+              origins.has("render.size") ? origins.of("render.size") + ": " : "", settings.width,
+              settings.height, 1e-9 * needed);
 }
 
 PlacedModels modelsAtOrigin(const RenderDescription& description,

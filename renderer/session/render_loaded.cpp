@@ -46,13 +46,9 @@ void checkGroupMemory(const LoadedScene& loaded, const World& world, const Light
   const double layers = double(LayerFilm::bytesPerPixel(count, false) + 2 * count * sizeof(Rgb)) *
                         window.width * window.height;
   const double needed = estimateMemory(loaded).peak + layers;
-  if (needed > memoryLimit(description))
-    throw InputError(
-        fmt::format("{}: {} light groups take {:.3g} GB of memory, with all else {:.3g} GB; the "
-                    "limit is {:.3g} GB",
-                    description.origins.of("output.aovs"), count, 1e-9 * layers, 1e-9 * needed,
-                    1e-9 * memoryLimit(description)),
-        Remedy{"memory", {}});
+  checkMemory(description, needed,
+              "{}: {} light groups take {:.3g} GB of memory, with all else {:.3g} GB",
+              description.origins.of("output.aovs"), count, 1e-9 * layers, 1e-9 * needed);
 }
 
 }  // namespace
