@@ -65,17 +65,7 @@ Camera withOptics(const RenderDescription& description, Camera camera) {
   return camera;
 }
 
-}  // namespace
-
-AutomaticView AutomaticView::seenFrom(const glm::dvec3& other) const {
-  AutomaticView view = *this;
-  const vec3 move(origin - other);
-  view.origin = other;
-  view.centre += move;
-  if (view.camera) view.camera->position += move;
-  return view;
-}
-
+// The description's size must be final.
 AutomaticView automaticView(const RenderDescription& description, const Scene& scene,
                             const glm::dvec3& origin) {
   const RenderSettings& s = description.settings;
@@ -89,13 +79,12 @@ AutomaticView automaticView(const RenderDescription& description, const Scene& s
   return view;
 }
 
+// The camera before its `orbit`.
 Camera chooseCamera(const RenderDescription& description, const Scene& scene,
                     const AutomaticView& view) {
   return withOptics(description,
                     withLens(description, chooseWithoutLens(description, scene, view)));
 }
-
-namespace {
 
 // Throws InputError if the scene reaches too far from the origin.
 void checkReach(const Bounds& box, const std::string& name) {
@@ -165,6 +154,15 @@ AutomaticView viewAtStart(const RenderDescription& description, const PlacedMode
 }
 
 }  // namespace
+
+AutomaticView AutomaticView::seenFrom(const glm::dvec3& other) const {
+  AutomaticView view = *this;
+  const vec3 move(origin - other);
+  view.origin = other;
+  view.centre += move;
+  if (view.camera) view.camera->position += move;
+  return view;
+}
 
 Scene loadModels(const RenderDescription& description, const std::vector<ModelEntry>& models,
                  const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings) {

@@ -134,8 +134,8 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
   fill(page, "tableNote",
        escaped(fmt::format(
            "With {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), relative to "
-           "{}: "
-           "of two unbiased strategies, one with twice the efficiency needs half the time for the "
+           "{}: of two unbiased strategies, one with twice the efficiency needs half the time for "
+           "the "
            "same error. The number after +- is half the 95% confidence interval; not significant: "
            "the interval includes 0. Slopes are of log error against log samples: -1 for "
            "independent samples.",
@@ -163,8 +163,8 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
                            machine.date)));
   fill(page, "method",
        "Strategies alternate (A B C A B C), so that a machine whose speed drifts does not favour "
-       "any "
-       "of them. Seconds are render time alone. Every render has its own seed, and the reference "
+       "any of them. Seconds are render time alone. Every render has its own seed, and the "
+       "reference "
        "shares none of them. All numbers are in <code>results.csv</code> and "
        "<code>results.json</code>, all renders in <code>renders/</code>.");
   fill(page, "data", jsonText(reportImages(store, results)));
@@ -213,8 +213,8 @@ std::string resultsHtml(const Study& study, const StudyResults& results) {
       "<table "
       "id=\"results\"><thead><tr><th>strategy</th><th></th><th>efficiency</th><th>relMSE</th>"
       "<th>seconds</th><th>preparation,<br>seconds</th><th>bias, %</th><th>slope "
-      "of<br>variance</th>"
-      "<th>slope of<br>relMSE</th><th>bias = noise<br>at samples</th></tr></thead><tbody>\n";
+      "of<br>variance</th><th>slope of<br>relMSE</th><th>bias = noise<br>at "
+      "samples</th></tr></thead><tbody>\n";
   const std::vector<const Cell*> cells = ranking(study, results);
   for (const Cell* cell : cells)
     for (const StrategyResult& strategy : results.strategies)
