@@ -28,8 +28,7 @@ void readComposite(const Section& section, SceneFile& scene) {
   const Entry local = section["local_scene"];
   if (!local && !hasGround)
     failAt(section.location(),
-           "[composite] has no `local_scene`; name its nodes, or give "
-           "`ground = true` for a plane");
+           "[composite] has no `local_scene`; name its nodes, or give `ground = true` for a plane");
   forEach(local, [&](const Entry& e) {
     scene.origins.set(elementName("composite.entry.localScene", composite.localScene.size()),
                       e.location());

@@ -183,8 +183,7 @@ std::vector<Setting> commandRows() {
            .type = Name,
            .absent = "none",
            .help = "Keeps what a render needs to go on after it was stopped or killed; also at its "
-                   "end, "
-                   "for more samples."},
+                   "end, for more samples."},
           {.option = "checkpoint-every",
            .argument = "SECONDS",
            .type = Number,

@@ -85,8 +85,7 @@ std::vector<Setting> renderRows() {
           {.key = "denoise",
            .type = Flag,
            .help = "Removes noise (biased). An .exr also has the noisy image, `noisy`, and the "
-                   "estimated "
-                   "standard error of what is left, `denoise_error`."},
+                   "estimated standard error of what is left, `denoise_error`."},
           {.key = "integrator",
            .type = Choice,
            .fallback = std::string(kIntegratorNames[size_t(usual.integrator)]),
@@ -183,11 +182,10 @@ std::vector<Setting> outputRows() {
        .type = Choices,
        .absent = "none",
        .choices = layers(),
-       .help = "Layers of the .exr beside the colour. l_obj, l_noobj, difference and "
-               "reflectance are those of a composite. light_groups are layers "
-               "light.NAME, the radiance from each source; shadow_mattes are "
-               "shadow.NAME, the factor by which its shadow darkens. ao and "
-               "bent_normal serve `image relight`.",
+       .help = "Layers of the .exr beside the colour. l_obj, l_noobj, difference and reflectance "
+               "are those of a composite. light_groups are layers light.NAME, the radiance from "
+               "each source; shadow_mattes are shadow.NAME, the factor by which its shadow "
+               "darkens. ao and bent_normal serve `image relight`.",
        .renderOnly = true},
       {.key = "develop",
        .argument = "\"NAME=VALUE ...\"",

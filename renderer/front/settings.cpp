@@ -56,9 +56,8 @@ std::span<const SettingSection> settingSections() {
       {"light", "[[light]]", "Lamps",
        "One table for each lamp. A point light has `intensity` or `power`, and perhaps a `range`; "
        "a spot also `direction`, `inner_angle` and `outer_angle`; a disc has `direction`, "
-       "`radius`, "
-       "and `radiance` or `power`, and is a surface like others: a polygon of 128 sides with its "
-       "exact area that shines to one side.",
+       "`radius`, and `radiance` or `power`, and is a surface like others: a polygon of 128 sides "
+       "with its exact area that shines to one side.",
        lightRows},
       {"source", "[[source]]", "Sources",
        "Windows and lamps in the probe that become light sources of their own: one table for each, "

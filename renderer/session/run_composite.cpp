@@ -159,8 +159,7 @@ void placeGround(const RenderDescription& description, LoadedScene& loaded) {
   const double depth = double(ground.height) - double(objects.min.y);
   if (depth > 1e-3 * glm::length(objects.size()))
     addWarning(loaded.messages,
-               "{}: the model reaches {:.3g} m below the ground; move it, or give "
-               "`ground_height`",
+               "{}: the model reaches {:.3g} m below the ground; move it, or give `ground_height`",
                location, depth);
   addGround(loaded.scene, ground, composite.entry.groundReflectance);
 }
@@ -185,8 +184,7 @@ void prepareLocalScene(LoadedScene& loaded) {
   loaded.isObject = findObjects(scene, localScene, location);
   if (!localScene.empty() && std::ranges::count(loaded.isObject, false) == 0)
     addWarning(loaded.messages,
-               "{}: local_scene: `{}` has no visible surface, so that no object changes "
-               "its light",
+               "{}: local_scene: `{}` has no visible surface, so that no object changes its light",
                localScene.front().location, localScene.front().name);
   if (composite.choosesReflectance && hasLamps(scene))
     composite.reflectance = CompositeDescription::Reflectance::Plate;
@@ -196,8 +194,7 @@ void prepareLocalScene(LoadedScene& loaded) {
       throwInput("{}: the local scene is not flat; give \"plate\"", reflectance);
     if (isLayered(scene, loaded.isObject))
       throwInput(
-          "{}: needs matte surfaces, and there are coats, sheen or transmission; give "
-          "\"plate\"",
+          "{}: needs matte surfaces, and there are coats, sheen or transmission; give \"plate\"",
           reflectance);
     if (description.surroundings)
       throwInput("{}: needs a distant probe, and there are [surroundings]; give \"plate\"",

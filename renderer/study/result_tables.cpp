@@ -236,10 +236,9 @@ std::string biasOf(const StrategyResult& strategy, bool hasNoisyReference) {
   if (!(strategy.squaredBias.low() > 0))
     return fmt::format("{} is biased, but its bias is not significant{}.", strategy.name,
                        hasNoisyReference ? " given the noise of this reference" : "");
-  std::string sentence = fmt::format(
-      "{} is biased: a relMSE of {} +- {} remains with any number "
-      "of samples",
-      strategy.name, size.number, size.halfInterval);
+  std::string sentence =
+      fmt::format("{} is biased: a relMSE of {} +- {} remains with any number of samples",
+                  strategy.name, size.number, size.halfInterval);
   if (const auto& crossing = strategy.biasEqualsNoise)
     sentence += fmt::format("; bias exceeds noise above {} samples per pixel ({} to {})",
                             shortNumber(crossing->samples, 2), shortNumber(crossing->low, 2),

@@ -126,9 +126,8 @@ std::string legendOf(const std::vector<PlotSeries>& series) {
     const Style style = styleOf(i);
     const double y = 12 + 22 * double(i);
     svg += fmt::format(
-        "<path d=\"M0 {0}h40\" stroke=\"{1}\" stroke-width=\"1.6\" "
-        "stroke-dasharray=\"{2}\"/>\n",
-        y, style.color, style.dash);
+        "<path d=\"M0 {0}h40\" stroke=\"{1}\" stroke-width=\"1.6\" stroke-dasharray=\"{2}\"/>\n", y,
+        style.color, style.dash);
     svg += mark(style, 20, y) + svgText(48, y + 4, "start", series[i].name);
   }
   return svg;

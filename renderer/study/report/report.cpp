@@ -135,10 +135,9 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
        escaped(fmt::format(
            "With {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), relative to "
            "{}: of two unbiased strategies, one with twice the efficiency needs half the time for "
-           "the "
-           "same error. The number after +- is half the 95% confidence interval; not significant: "
-           "the interval includes 0. Slopes are of log error against log samples: -1 for "
-           "independent samples.",
+           "the same error. The number after +- is half the 95% confidence interval; not "
+           "significant: the interval includes 0. Slopes are of log error against log samples: -1 "
+           "for independent samples.",
            at, study.baseline)));
   fill(page, "table", resultsHtml(study, results));
   fill(
@@ -164,8 +163,7 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
   fill(page, "method",
        "Strategies alternate (A B C A B C), so that a machine whose speed drifts does not favour "
        "any of them. Seconds are render time alone. Every render has its own seed, and the "
-       "reference "
-       "shares none of them. All numbers are in <code>results.csv</code> and "
+       "reference shares none of them. All numbers are in <code>results.csv</code> and "
        "<code>results.json</code>, all renders in <code>renders/</code>.");
   fill(page, "data", jsonText(reportImages(store, results)));
   fill(page, "script", kReportScript);
@@ -197,8 +195,7 @@ std::string row(const Cell& cell, const StrategyResult& strategy, double mostEff
   return fmt::format(
       "<tr data-strategy=\"{0}\"><td>{0}</td><td class=\"bars\"><span class=\"bar\" "
       "style=\"width:{1:.0f}px\"></span></td><td>{2}</td><td>{3}</td><td>{4}</td><td>{5:.3f}</"
-      "td><td>{6}</td><td>{7}</td><td>{8}</td>"
-      "<td>{9}</td></tr>\n",
+      "td><td>{6}</td><td>{7}</td><td>{8}</td><td>{9}</td></tr>\n",
       escaped(cell.strategy), width, significant(cell.efficiency), significant(cell.error.relMse),
       plusMinus(cell.seconds), cell.prepareSeconds,
       significant({100 * cell.error.bias.mean, 100 * cell.error.bias.standardError}),
