@@ -193,21 +193,6 @@ std::string existingFile(const Entry& entry, std::string_view relativeTo) {
   return path;
 }
 
-toml::table parseToml(const std::string& path) {
-  checkReadable(path);
-  if (const auto bytes = std::filesystem::file_size(path); bytes > kMaxFileBytes)
-    throwInput("{}: {} bytes; a scene file has at most {}", path, bytes, kMaxFileBytes);
-  const std::vector<uint8_t> bytes = readFile(path);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  checkKeyDepth(text, path);
-  try {
-    return toml::parse(text, path);
-  } catch (const toml::parse_error& error) {
-    failAt(fmt::format("{}:{}", path, error.source().begin.line), "not valid TOML: {}",
-           error.description());
-  }
-}
-
 namespace {
 
 // The position after the string or comment that begins at `begin`.
@@ -225,8 +210,10 @@ size_t endOfToken(std::string_view toml, size_t begin) {
   return toml.size();
 }
 
-}  // namespace
-
+// Bounds the nesting of dotted keys before TOML is parsed: toml++ bounds the nesting of values
+// only, and walks the tables that keys make recursively. Throws InputError for a key of more than
+// 16 parts (`a.b.c` has 3), as a header or anywhere else. Text that is not valid TOML passes, or
+// fails with a line.
 void checkKeyDepth(std::string_view toml, const std::string& path) {
   constexpr size_t kMostParts = 16;
   size_t dots = 0;
@@ -242,6 +229,23 @@ void checkKeyDepth(std::string_view toml, const std::string& path) {
       throwInput("{}:{}: a key has more than {} parts", path,
                  1 + std::count(toml.begin(), toml.begin() + ptrdiff_t(at), '\n'), kMostParts);
     ++at;
+  }
+}
+
+}  // namespace
+
+toml::table parseToml(const std::string& path) {
+  checkReadable(path);
+  if (const auto bytes = std::filesystem::file_size(path); bytes > kMaxFileBytes)
+    throwInput("{}: {} bytes; a scene file has at most {}", path, bytes, kMaxFileBytes);
+  const std::vector<uint8_t> bytes = readFile(path);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  checkKeyDepth(text, path);
+  try {
+    return toml::parse(text, path);
+  } catch (const toml::parse_error& error) {
+    failAt(fmt::format("{}:{}", path, error.source().begin.line), "not valid TOML: {}",
+           error.description());
   }
 }
 

@@ -54,8 +54,4 @@ inline constexpr double kProcessBytes = 3e7;
 // Peak memory of the film, the layers and the output images, in bytes.
 double imageBytes(const RenderSettings& settings);
 
-// The additional memory for snapshots of a session (live_image.h): three images; for a composite, a
-// copy of the film and two images.
-double snapshotBytes(const RenderSettings& settings, bool isComposite);
-
 }  // namespace chromeball
