@@ -193,11 +193,11 @@ OutputDescription plannedOutput(const Settings& s) {
 RenderDescription planRender(SceneFile scene, const Settings& over) {
   overrideSettings(scene, over);
   RenderDescription description;
+  static_cast<SceneParts&>(description) = scene;
   const Settings& s = scene.settings;
   for (const Setting& setting : settingTable())
-    if (const auto* given = s.find(setting.name()))
+    if (const auto* given = s.find(setting.name()); given && !scene.origins.has(setting.name()))
       description.origins.set(setting.name(), given->location);
-  description.origins.add(scene.origins);
   description.camera = plannedCamera(scene);
   description.probe = plannedProbe(scene);
   if (scene.plateScale) description.origins.set("probe.scale", *scene.plateScale);
@@ -209,13 +209,6 @@ RenderDescription planRender(SceneFile scene, const Settings& over) {
   description.output = plannedOutput(s);
   description.output.makesFolders = !over.has("output.file");
   description.run = plannedRun(s);
-  description.path = std::move(scene.path);
-  description.models = std::move(scene.models);
-  description.lamps = std::move(scene.lamps);
-  description.sources = std::move(scene.sources);
-  description.lightLists = std::move(scene.lightLists);
-  description.surroundings = std::move(scene.surroundings);
-  description.warnings = std::move(scene.warnings);
   if (scene.composite) planComposite(s, std::move(*scene.composite), description);
   checkCapabilities(description);
   return description;
