@@ -29,7 +29,7 @@ glm::quat readRotation(const Entry& entry) {
 }
 
 vec3 readScale(const Entry& entry) {
-  const vec3 scale = entry.isArray() ? entry.vector() : vec3(float(entry.number()));
+  const vec3 scale = entry.oneOrThree();
   if (scale.x * scale.y * scale.z == 0) entry.mustBe("other than 0");
   return scale;
 }

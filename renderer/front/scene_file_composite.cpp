@@ -5,8 +5,7 @@ namespace chromeball {
 namespace {
 
 void readGround(const Section& section, CompositeEntry& composite, Origins& origins) {
-  if (const Entry e = section["ground_reflectance"])
-    composite.groundReflectance = e.isArray() ? e.vector() : Rgb(float(e.number()));
+  if (const Entry e = section["ground_reflectance"]) composite.groundReflectance = e.oneOrThree();
   if (const Entry e = section["ground_reflectance_range"]) {
     if (!e.isArrayOf(2)) e.mustBe(e.setting->form);
     origins.set("composite.ground_reflectance_range", e.location());

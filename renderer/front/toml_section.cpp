@@ -80,6 +80,8 @@ std::vector<double> Entry::numbers() const {
 
 vec3 Entry::vector() const { return vec3(point()); }
 
+vec3 Entry::oneOrThree() const { return isArray() ? vector() : vec3(float(number())); }
+
 glm::dvec3 Entry::point() const {
   if (!isArrayOf(3)) mustBe("three numbers");
   return {element(0).number(), element(1).number(), element(2).number()};

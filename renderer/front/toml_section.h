@@ -52,6 +52,7 @@ struct Entry {
   double number(const Range& narrower) const;
   std::vector<double> numbers() const;  // one such number, or an array of as many as allowed
   vec3 vector() const;                  // three such numbers
+  vec3 oneOrThree() const;              // one for all of them, or three
   glm::dvec3 point() const;             // likewise, not rounded: a position in the world, metres
 
   // The value of a setting that is not a Compound.
