@@ -254,19 +254,17 @@ std::vector<std::string> verdict(const Study& study, const StudyResults& results
       largestCommonBudget(study, results, [](const Budget& budget) { return !budget.timed; });
   const auto seconds =
       largestCommonBudget(study, results, [](const Budget& budget) { return budget.timed; });
-  if (samples)
-    sentences.push_back(winner(contenders(results, *samples, relMse),
-                               fmt::format("At equal samples ({})", samples->label()), "relMSE",
+  const auto add = [&](const Budget& budget, Estimate (*cost)(const Cell&), const char* condition,
+                       const char* metric) {
+    sentences.push_back(winner(contenders(results, budget, cost),
+                               fmt::format("{}{})", condition, budget.label()), metric,
                                study.baseline));
+  };
+  if (samples) add(*samples, relMse, "At equal samples (", "relMSE");
   if (seconds)
-    sentences.push_back(winner(contenders(results, *seconds, relMse),
-                               fmt::format("At equal time ({})", seconds->label()), "relMSE",
-                               study.baseline));
+    add(*seconds, relMse, "At equal time (", "relMSE");
   else if (samples)
-    sentences.push_back(
-        winner(contenders(results, *samples, relMseTimesSeconds),
-               fmt::format("At equal time (extrapolated from {})", samples->label()),
-               "relMSE x seconds", study.baseline));
+    add(*samples, relMseTimesSeconds, "At equal time (extrapolated from ", "relMSE x seconds");
   for (const StrategyResult& strategy : results.strategies)
     if (!strategy.unbiased)
       if (std::string text = biasOf(strategy, results.referenceErrorKnown); !text.empty())
