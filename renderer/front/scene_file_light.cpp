@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "front/arguments.h"
 #include "front/polygon_file.h"
 #include "lighting/export/light_list.h"
@@ -28,8 +30,7 @@ const std::vector<LampType> kTypes = {
 const LampType& typeOf(const Section& light) {
   const Entry type = light["type"];
   const std::string name = type ? type.choice() : light["file"] ? "list" : "sun";
-  return *std::find_if(kTypes.begin(), kTypes.end(),
-                       [&](const LampType& t) { return t.name == name; });
+  return *std::ranges::find(kTypes, name, &LampType::name);
 }
 
 vec3 readDirection(const Section& light) {

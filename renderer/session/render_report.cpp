@@ -195,8 +195,8 @@ Messages checkOutputs(const RenderDescription& description) {
   if (description.run.checkpoint) checkOutputFile(*description.run.checkpoint, {".exr"});
 
   const auto has = [&](std::string_view extension) {
-    return std::any_of(files.begin(), files.end(),
-                       [&](const auto& output) { return lowerExtension(output) == extension; });
+    return std::ranges::any_of(
+        files, [&](const auto& output) { return lowerExtension(output) == extension; });
   };
   if (description.settings.isPart() && description.origins.has("shard") && !has(".exr"))
     throwInput("{}: needs an .exr as output, which `chromeball merge` reads",

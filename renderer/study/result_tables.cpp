@@ -110,9 +110,8 @@ std::vector<const Cell*> ranking(const Study& study, const StudyResults& results
   const std::optional<Budget> budget = largestCommonBudget(study, results);
   for (const StrategyResult& strategy : results.strategies)
     if (const Cell* cell = budget ? findCell(strategy, *budget) : nullptr) cells.push_back(cell);
-  std::stable_sort(cells.begin(), cells.end(), [](const Cell* a, const Cell* b) {
-    return a->efficiency.mean > b->efficiency.mean;
-  });
+  std::ranges::stable_sort(cells, std::ranges::greater(),
+                           [](const Cell* cell) { return cell->efficiency.mean; });
   return cells;
 }
 
@@ -203,9 +202,7 @@ std::vector<Contender> contenders(const StudyResults& results, const Budget& bud
   std::vector<Contender> sorted;
   for (const StrategyResult& strategy : results.strategies)
     if (const Cell* cell = findCell(strategy, budget)) sorted.push_back({cell, cost(*cell)});
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Contender& a, const Contender& b) {
-    return a.cost.mean < b.cost.mean;
-  });
+  std::ranges::stable_sort(sorted, {}, [](const Contender& c) { return c.cost.mean; });
   return sorted;
 }
 
