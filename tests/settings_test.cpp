@@ -73,7 +73,7 @@ std::vector<OptionValue> valuesOf(const Setting& s) {
       break;
     case SettingType::Choice:
     case SettingType::Choices:
-      for (const std::string_view name : s.choices()) values.push_back({std::string(name), true});
+      for (const std::string_view name : s.choices) values.push_back({std::string(name), true});
       values.push_back({"nonsense", false});
       break;
     case SettingType::Size:
@@ -104,7 +104,7 @@ TEST(Settings, EveryRowIsComplete) {
     EXPECT_EQ(s.type == SettingType::Compound || isNumbers, !s.form.empty());
     EXPECT_EQ(isNumbers, !s.counts.empty());
     if (s.type == SettingType::Choice || s.type == SettingType::Choices) {
-      EXPECT_TRUE(s.choices);
+      EXPECT_FALSE(s.choices.empty());
     }
     if (!s.option.empty() && s.type != SettingType::Flag) {
       EXPECT_FALSE(s.argument.empty());
@@ -313,7 +313,7 @@ TEST(Settings, MisuseByProgramsThrows) {
 }
 
 TEST(Settings, EveryMappingNameIsParsed) {
-  for (const std::string_view name : settingNamed("probe.mapping").choices()) {
+  for (const std::string_view name : settingNamed("probe.mapping").choices) {
     const ImageSize size = name == "cube-strip"   ? ImageSize{6, 1}
                            : name == "cube-cross" ? ImageSize{4, 3}
                            : name == "cube-3x2"   ? ImageSize{3, 2}
@@ -343,8 +343,8 @@ TEST(CommandSettings, HelpShowsEveryOptionWithItsDefaultAndNames) {
       EXPECT_NE(help.find(fmt::format("(default: {})", defaultText(s))), std::string::npos)
           << s.option;
     }
-    if (s.choices) {
-      EXPECT_NE(help.find(fmt::format("{}", fmt::join(s.choices(), ", "))), std::string::npos)
+    if (!s.choices.empty()) {
+      EXPECT_NE(help.find(fmt::format("{}", fmt::join(s.choices, ", "))), std::string::npos)
           << s.option;
     }
   }

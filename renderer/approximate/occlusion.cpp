@@ -21,17 +21,18 @@ SkyRay traced(const World& world, const Surface& surface, const vec3& direction,
   return {direction, world.accel.transmittance(rayFrom(surface, direction, distance), visible)};
 }
 
+// A sky ray with constant density over the hemisphere.
+SkyRay uniformSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
+                     RayMask visible, PathContext& context) {
+  const vec3 local = squareToUniformHemisphere(context.sampler.get2(dimension::kLight));
+  return traced(world, surface, Frame(normal).toWorld(local), distance, visible, context);
+}
+
 }  // namespace
 
 SkyRay cosineSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
                     RayMask visible, PathContext& context) {
   const vec3 local = squareToCosineHemisphere(context.sampler.get2(dimension::kLight));
-  return traced(world, surface, Frame(normal).toWorld(local), distance, visible, context);
-}
-
-SkyRay uniformSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
-                     RayMask visible, PathContext& context) {
-  const vec3 local = squareToUniformHemisphere(context.sampler.get2(dimension::kLight));
   return traced(world, surface, Frame(normal).toWorld(local), distance, visible, context);
 }
 

@@ -35,10 +35,6 @@ struct SkyRay {
 SkyRay cosineSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
                     RayMask visible, PathContext& context);
 
-// A sky ray with constant density over the hemisphere.
-SkyRay uniformSkyRay(const World& world, const Surface& surface, const vec3& normal, float distance,
-                     RayMask visible, PathContext& context);
-
 // Layers that need rays of their own at the first surface: ambient occlusion, bent normals (HDRI
 // book, section 9.8.2) and irradiance (figure 9.38c).
 

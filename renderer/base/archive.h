@@ -45,16 +45,18 @@ class Archive {
     bytes(items.data(), count * sizeof(T));
   }
 
-  // Objects with archive().
+  // Texts, or objects with archive().
   template <class T>
-  requires requires(T& t, Archive& a) { t.archive(a); }
-  void operator()(std::vector<T>& items) {
+  requires(!std::is_trivially_copyable_v<T>) void operator()(std::vector<T>& items) {
     uint64_t count = items.size();
     (*this)(count);
     if (reads()) items.clear();
     for (uint64_t i = 0; i < count; ++i) {
       if (reads()) items.emplace_back();  // one by one: the number may be wrong
-      items[i].archive(*this);
+      if constexpr (std::is_same_v<T, std::string>)
+        (*this)(items[i]);
+      else
+        items[i].archive(*this);
     }
   }
 

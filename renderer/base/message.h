@@ -2,6 +2,8 @@
 // Messages of the library to its user. The library itself prints nothing.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +28,15 @@ struct Message {
 };
 
 using Messages = std::vector<Message>;
+
+template <class... Args>
+void addWarning(Messages& messages, fmt::format_string<Args...> format, Args&&... args) {
+  messages.push_back({Message::Kind::Warning, fmt::format(format, std::forward<Args>(args)...)});
+}
+template <class... Args>
+void addNote(Messages& messages, fmt::format_string<Args...> format, Args&&... args) {
+  messages.push_back({Message::Kind::Note, fmt::format(format, std::forward<Args>(args)...)});
+}
 
 // Merges many messages of a kind into one.
 

@@ -149,4 +149,14 @@ std::string didYouMean(std::string_view name, const std::vector<std::string_view
   return fmt::format("did you mean `{}`?", nearest);
 }
 
+std::vector<std::string_view> splitAt(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
 }  // namespace chromeball

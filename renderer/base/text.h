@@ -35,6 +35,9 @@ std::string_view nearestName(std::string_view name, const std::vector<std::strin
 // "did you mean `NEAREST`?", or "known: A, B, C" if no name is near. The end of an error message.
 std::string didYouMean(std::string_view name, const std::vector<std::string_view>& known);
 
+// The parts of a text between separators, also empty ones; at least one.
+std::vector<std::string_view> splitAt(std::string_view text, char separator);
+
 // Numbers in texts, independent of the locale.
 
 // Reads a number from the front of `text` and removes it. std::from_chars() does not know a leading

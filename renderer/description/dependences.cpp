@@ -37,6 +37,7 @@ bool wantsOcclusion(const D& d) {
 
 bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
 bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
+bool hasPaths(const D& d, const SceneContents&) { return followsPaths(d); }
 
 constexpr std::array kDependences = {
     Dependence{"camera.shutter", "anything that moves",  // at the times of other frames it may
@@ -63,8 +64,7 @@ constexpr std::array kDependences = {
                  return lightsSurfaces(d, c) || !followsPaths(d) || !c.hasProbe ||
                         d.lighting.showLights || strategyOf(d) == "suns";
                }},
-    Dependence{"lighting.mis", "an integrator that samples the probe (path, direct)",
-               [](const D& d, const SceneContents&) { return followsPaths(d); }},
+    Dependence{"lighting.mis", "an integrator that samples the probe (path, direct)", hasPaths},
     Dependence{"lighting.mis", "bounces",
                [](const D& d, const SceneContents& c) {
                  return lightsSurfaces(d, c) || !followsPaths(d);
@@ -131,7 +131,7 @@ constexpr std::array kDependences = {
     Dependence{"render.max_transmission_depth", "bodies of glass",
                [](const D&, const SceneContents& c) { return c.hasBodies; }},
     Dependence{"render.max_transmission_depth", "an integrator that follows paths (path, direct)",
-               [](const D& d, const SceneContents&) { return followsPaths(d); }},
+               hasPaths},
     Dependence{"render.single_sided", "single-sided surfaces",
                [](const D& d, const SceneContents& c) {
                  return d.singleSided == SingleSided::Camera || c.hidesBacks;

@@ -9,7 +9,6 @@
 
 #include "base/json.h"
 #include "base/text.h"
-#include "description/describe_parts.h"
 #include "film/aov.h"
 #include "lighting/strategy.h"
 #include "render/render_settings.h"

@@ -19,6 +19,9 @@ namespace chromeball {
 // scene-camera, lens, optics, scene-lights, sources, surroundings, local-scene, composite.
 nlohmann::ordered_json describe(const RenderDescription& description);
 
+// Adds the hashes to those values.
+void addParts(const RenderDescription& description, nlohmann::ordered_json& to);
+
 // The names of the layers, of plain renders and composites.
 std::vector<std::string> layerNames(const RenderDescription& description);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "description/describe_parts.h"
+#include "description/describe.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/json_text.h"
-#include "description/describe.h"
 
 namespace chromeball {
 namespace {

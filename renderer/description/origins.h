@@ -19,10 +19,6 @@ inline std::string elementName(std::string_view array, size_t index) {
 class Origins {
  public:
   void set(const std::string& name, const std::string& location) { locations_[name] = location; }
-  // Adds all of the others; they take precedence.
-  void add(const Origins& others) {
-    for (const auto& [name, location] : others.locations_) set(name, location);
-  }
 
   // Whether someone has given the value; else it is a default, or a program's.
   bool has(std::string_view name) const { return locations_.contains(name); }

@@ -10,7 +10,6 @@
 
 #include "base/message.h"
 #include "composite/layers.h"
-#include "description/origins.h"
 #include "description/scene_entries.h"
 #include "image/develop/develop.h"
 #include "image/tonemap.h"
@@ -108,15 +107,9 @@ struct OutputDescription {
   DisplayTransform display;  // of a .png
 };
 
-struct RenderDescription {
-  std::string path;                // of the scene file, or of the model if there is none
-  std::vector<ModelEntry> models;  // at least one, unless there is a `scene`
-  std::shared_ptr<const Scene>
-      scene;  // from memory (scene/builder), in place of models; null: none
-  std::vector<Lamp> lamps;
-  std::vector<SourceEntry> sources;
-  std::vector<std::string> lightLists;  // files that lamps and sources are from
-  std::optional<SurroundingsEntry> surroundings;
+struct RenderDescription : SceneParts {
+  // From memory (scene/builder), in place of models; null: none.
+  std::shared_ptr<const Scene> scene;
   CameraDescription camera;
   ProbeDescription probe;
   LightingDescription lighting;
@@ -130,8 +123,6 @@ struct RenderDescription {
 
   OutputDescription output;
   RunDescription run;
-  Origins origins;
-  std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
 
   // The scene's name in messages: the first model's.
   std::string sceneName() const { return models.empty() ? "the scene" : models.front().file; }

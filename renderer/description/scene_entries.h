@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "description/origins.h"
 #include "scene/camera.h"
 #include "scene/gltf/load_gltf.h"
 #include "scene/light.h"
@@ -76,6 +77,18 @@ struct SourceEntry {
   std::string name;
   std::vector<glm::dvec2> corners;  // positions in the probe's image, in pixels from its top left
   bool isIllum = true;
+};
+
+// What a scene file and the description made from it have in common.
+struct SceneParts {
+  std::string path;                  // of the scene file, or of the model if there is none
+  std::vector<ModelEntry> models;    // at least one, unless a description has a scene from memory
+  std::vector<Lamp> lamps;           // [[light]]
+  std::vector<SourceEntry> sources;  // [[source]]
+  std::vector<std::string> lightLists;  // files that lamps and sources are from
+  std::optional<SurroundingsEntry> surroundings;
+  Origins origins;
+  std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
 };
 
 }  // namespace chromeball

@@ -10,23 +10,14 @@
 #include "image/size_limits.h"
 
 namespace chromeball {
-namespace {
-
-bool takeLetter(std::string_view& text, char letter) {
-  if (text.empty() || text.front() != letter) return false;
-  text.remove_prefix(1);
-  return true;
-}
-
-}  // namespace
 
 ImageSize parseSize(std::string_view text, std::string_view location) {
   constexpr int kLargest = 65536;
   const auto inRange = [](int side) { return side >= 1 && side <= kLargest; };
   ImageSize size{};
-  std::string_view rest = text;
-  if (takeNumber(rest, size.width) && takeLetter(rest, 'x') && takeNumber(rest, size.height) &&
-      rest.empty() && inRange(size.width) && inRange(size.height)) {
+  const auto sides = splitAt(text, 'x');
+  if (sides.size() == 2 && toNumber(sides[0], size.width) && toNumber(sides[1], size.height) &&
+      inRange(size.width) && inRange(size.height)) {
     checkImageSize(location, size.width, size.height, 3);
     return size;
   }
@@ -42,13 +33,12 @@ LightUnits parseLightUnits(const NamedSetting& setting) {
 }
 
 std::vector<double> parseNumbers(std::string_view text, size_t count, std::string_view location) {
-  std::vector<double> numbers(count);
-  std::string_view rest = text;
-  bool valid = true;
-  for (size_t i = 0; i < count && valid; ++i)
-    valid = (i == 0 || takeLetter(rest, ',')) && takeNumber(rest, numbers[i]) &&
-            std::isfinite(numbers[i]);
-  if (valid && rest.empty()) return numbers;
+  std::vector<double> numbers;
+  const auto parts = splitAt(text, ',');
+  const bool valid = std::ranges::all_of(parts, [&](std::string_view part) {
+    return toNumber(part, numbers.emplace_back()) && std::isfinite(numbers.back());
+  });
+  if (valid && parts.size() == count) return numbers;
   if (count == 1) throwInput("{}: `{}` is not a number", location, text);
   throwInput("{}: `{}` is not {} numbers with commas between them", location, text, count);
 }

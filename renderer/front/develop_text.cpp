@@ -41,17 +41,13 @@ std::vector<WeightedGaussian> parseBloom(std::string_view text, std::string_view
   constexpr double kTolerance = 0.01;
   std::vector<WeightedGaussian> mixture;
   double sum = 0;
-  for (bool isLast = false; !isLast;) {
-    const size_t comma = text.find(',');
-    isLast = comma == std::string_view::npos;
-    const auto [weight, sigma] =
-        split(text.substr(0, comma), ':', "WEIGHT:SIGMA, as in .75:1,.25:32", location);
+  for (const std::string_view part : splitAt(text, ',')) {
+    const auto [weight, sigma] = split(part, ':', "WEIGHT:SIGMA, as in .75:1,.25:32", location);
     mixture.push_back({numberIn(weight, 0, 1, "weight", location),
                        numberIn(sigma, 0, kMaxSigma, "sigma (pixels)", location)});
     sum += mixture.back().weight;
     if (mixture.size() > kMaxGaussians)
       throwInput("{}: has more than {} Gaussians", location, kMaxGaussians);
-    if (!isLast) text.remove_prefix(comma + 1);
   }
   if (std::fabs(sum - 1) > kTolerance)
     throwInput("{}: the weights sum to {:g}; they should sum to 1, to keep the image's energy",

@@ -11,16 +11,10 @@ namespace {
 
 using Reflectance = CompositeDescription::Reflectance;
 
-Reflectance reflectanceNamed(const std::string& name) {
-  return name == "plate"  ? Reflectance::Plate
-         : name == "flat" ? Reflectance::Flat
-                          : Reflectance::Model;
-}
-
 void planReflectance(const Settings& s, RenderDescription& description) {
   CompositeDescription& composite = *description.composite;
-  if (const auto name = s.getIfGiven<std::string>("composite.reflectance")) {
-    composite.reflectance = reflectanceNamed(*name);
+  if (s.has("composite.reflectance")) {
+    composite.reflectance = s.choice<Reflectance>("composite.reflectance");
   } else if (s.get<bool>("composite.ground")) {
     const bool isSimple = composite.entry.localScene.empty() && !description.surroundings &&
                           description.lamps.empty();
@@ -46,8 +40,7 @@ void planShadowCatcher(const Settings& s, RenderDescription& description) {
 
 void planPlate(const Settings& s, RenderDescription& description) {
   CompositeDescription& composite = *description.composite;
-  composite.mode = s.get<std::string>("composite.mode") == "ratio" ? CompositeMode::Ratio
-                                                                   : CompositeMode::Difference;
+  composite.mode = s.choice<CompositeMode>("composite.mode");
   composite.plateFile = s.get<std::string>("composite.plate");
   const Image plate = readPlate(*composite.plateFile, &composite.messages);
   std::optional<ImageSize>& size = description.size;

@@ -2,10 +2,10 @@
 #include "front/plan_render.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "composite/layers.h"
 #include "description/capabilities.h"
 #include "front/arguments.h"
@@ -15,37 +15,15 @@
 namespace chromeball {
 namespace {
 
-Mis misNamed(const std::string& name) {
-  return name == "off" ? Mis::Off : name == "power" ? Mis::Power : Mis::Balance;
-}
-
-IntegratorKind integratorNamed(const std::string& name) {
-  return IntegratorKind(std::ranges::find(kIntegratorNames, name) - kIntegratorNames.begin());
-}
-
-Guiding guidingNamed(const std::string& name) {
-  return name == "off" ? Guiding::Off : name == "on" ? Guiding::On : Guiding::Auto;
-}
-
 // Whole numbers up to a million, with this character between; nullopt for any other text.
 std::optional<std::vector<uint32_t>> splitNumbers(const std::string& text, char between) {
   std::vector<uint32_t> numbers;
-  const char *at = text.data(), *end = at + text.size();
-  for (;; ++at) {
-    uint32_t number = 0;
-    const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc() || number > 1'000'000) return {};
-    numbers.push_back(number);
-    at = next;
-    if (at == end) return numbers;
-    if (*at != between) return {};
+  for (const std::string_view part : splitAt(text, between)) {
+    const bool isWhole = part.find_first_not_of("0123456789") == std::string_view::npos &&
+                         toNumber(part, numbers.emplace_back());
+    if (!isWhole || numbers.back() > 1'000'000) return {};
   }
-}
-
-SingleSided singleSidedNamed(const std::string& name) {
-  return name == "off"     ? SingleSided::Off
-         : name == "light" ? SingleSided::Light
-                           : SingleSided::Camera;
+  return numbers;
 }
 
 // The layers of plain renders; the layers of composites are in CompositeDescription.
@@ -100,23 +78,24 @@ RenderSettings integratorSettings(const SceneFile& file) {
   if ((r.timeLimit || r.noiseLimit) && !s.has("render.samples")) r.samples = kMaxSamples;
   r.crop = cropOf(s);
   r.adaptive = s.get<std::string>("render.adaptive") == "on";
-  r.guiding = guidingNamed(s.get<std::string>("render.guide"));
+  const auto guide = s.get<std::string>("render.guide");
+  r.guiding = guide == "off" ? Guiding::Off : guide == "on" ? Guiding::On : Guiding::Auto;
   r.maxDepth = int(s.get<uint64_t>("render.max_depth"));
   if (const auto depth = s.getIfGiven<uint64_t>("render.max_diffuse_depth"))
     r.maxDiffuseDepth = int(*depth);
   if (const auto depth = s.getIfGiven<uint64_t>("render.max_specular_depth"))
     r.maxSpecularDepth = int(*depth);
-  r.integrator = integratorNamed(s.get<std::string>("render.integrator"));
+  r.integrator = s.choice<IntegratorKind>("render.integrator");
   if (const auto error = s.getIfGiven<double>("render.irradiance_cache"))
     r.cacheError = float(*error);
   r.occlusion.ambient = s.get<bool>("render.ao");
   r.occlusion.reflection = s.get<bool>("render.reflection_occlusion");
   if (const auto distance = s.getIfGiven<double>("render.ao_distance"))
     r.occlusion.distance = float(*distance);
-  r.occlusion.uniformBent = s.get<std::string>("render.bent") == "uniform";
+  r.occlusion.uniformBent = s.choice<bool>("render.bent");
   r.maxTransmissionDepth = int(s.get<uint64_t>("render.max_transmission_depth"));
   r.seed = s.get<uint64_t>("render.seed");
-  r.mis = misNamed(s.get<std::string>("lighting.mis"));
+  r.mis = s.choice<Mis>("lighting.mis");
   r.hideProbe = s.get<bool>("transparent");
   if (const auto clamp = s.getIfGiven<double>("clamp")) r.clamp = float(*clamp);
   r.aovs = layersOf(file);
@@ -163,11 +142,8 @@ ProbeDescription plannedProbe(const SceneFile& file) {
 }
 
 LightingDescription plannedLighting(const Settings& s) {
-  const auto from = s.get<std::string>("lighting.from");
   return {.strategy = s.get<std::string>("lighting.strategy"),
-          .from = from == "suns"   ? LightFrom::Suns
-                  : from == "rest" ? LightFrom::Rest
-                                   : LightFrom::All,
+          .from = s.choice<LightFrom>("lighting.from"),
           .lamps = s.get<double>("lighting.lights"),
           .sunAngle = s.getIfGiven<double>("lighting.sun_angle"),
           .showLights = s.get<bool>("lighting.show_lights")};
@@ -217,29 +193,22 @@ OutputDescription plannedOutput(const Settings& s) {
 RenderDescription planRender(SceneFile scene, const Settings& over) {
   overrideSettings(scene, over);
   RenderDescription description;
+  static_cast<SceneParts&>(description) = scene;
   const Settings& s = scene.settings;
   for (const Setting& setting : settingTable())
-    if (const auto* given = s.find(setting.name()))
+    if (const auto* given = s.find(setting.name()); given && !scene.origins.has(setting.name()))
       description.origins.set(setting.name(), given->location);
-  description.origins.add(scene.origins);
   description.camera = plannedCamera(scene);
   description.probe = plannedProbe(scene);
   if (scene.plateScale) description.origins.set("probe.scale", *scene.plateScale);
   description.lighting = plannedLighting(s);
   description.settings = integratorSettings(scene);
   description.size = s.getIfGiven<ImageSize>("render.size");
-  description.singleSided = singleSidedNamed(s.get<std::string>("render.single_sided"));
-  description.straightGlassShadows = s.get<std::string>("render.glass_shadows") == "straight";
+  description.singleSided = s.choice<SingleSided>("render.single_sided");
+  description.straightGlassShadows = s.choice<bool>("render.glass_shadows");
   description.output = plannedOutput(s);
   description.output.makesFolders = !over.has("output.file");
   description.run = plannedRun(s);
-  description.path = std::move(scene.path);
-  description.models = std::move(scene.models);
-  description.lamps = std::move(scene.lamps);
-  description.sources = std::move(scene.sources);
-  description.lightLists = std::move(scene.lightLists);
-  description.surroundings = std::move(scene.surroundings);
-  description.warnings = std::move(scene.warnings);
   if (scene.composite) planComposite(s, std::move(*scene.composite), description);
   checkCapabilities(description);
   return description;

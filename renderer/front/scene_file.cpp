@@ -29,7 +29,7 @@ glm::quat readRotation(const Entry& entry) {
 }
 
 vec3 readScale(const Entry& entry) {
-  const vec3 scale = entry.isArray() ? entry.vector() : vec3(float(entry.number()));
+  const vec3 scale = entry.oneOrThree();
   if (scale.x * scale.y * scale.z == 0) entry.mustBe("other than 0");
   return scale;
 }
@@ -160,16 +160,14 @@ void applyToModels(const Settings& over, SceneFile& file) {
       file.origins.set(elementName("models", i) + ".choice.variant",
                        over.location("model.variant"));
     }
-    choice.lightUnits = parseLightUnits(
-        {all.get<std::string>("lighting.light_units"), all.location("lighting.light_units")});
+    choice.lightUnits = all.choice<LightUnits>("lighting.light_units");
     if (all.get<bool>("allow-external")) choice.external = ExternalFiles::Allow;
   }
 }
 
 // The rotation at a time; constant before the first key and after the last one.
 std::vector<double> rotationAt(const std::vector<ProbeTurn>& keys, double seconds) {
-  const auto after = std::upper_bound(keys.begin(), keys.end(), seconds,
-                                      [](double t, const auto& key) { return t < key.seconds; });
+  const auto after = std::ranges::upper_bound(keys, seconds, {}, &ProbeTurn::seconds);
   if (after == keys.begin()) return keys.front().rotation;
   if (after == keys.end()) return keys.back().rotation;
   const ProbeTurn &from = *(after - 1), &to = *after;
@@ -222,8 +220,8 @@ void applyShadowCatcher(SceneFile& file) {
 void overrideSettings(SceneFile& file, const Settings& over) {
   mergeCamera(file, over);
   const std::string_view limits[] = {"render.samples", "render.time", "render.noise"};
-  const auto isGiven = [&](std::string_view name) { return over.has(name); };
-  if (std::any_of(std::begin(limits), std::end(limits), isGiven))  // the limits are one decision
+  // The limits are one decision.
+  if (std::ranges::any_of(limits, [&](std::string_view name) { return over.has(name); }))
     for (const std::string_view name : limits) file.settings.erase(name);
   if (over.has("probe.scale")) file.plateScale.reset();
   file.settings.merge(over);

@@ -20,22 +20,14 @@ struct ProbeTurn {
 };
 
 // The contents of a scene file. Paths are resolved against the scene file's folder.
-struct SceneFile {
-  std::string path;                // of the scene file, or of the model if there is no scene file
-  std::vector<ModelEntry> models;  // at least one
-  Settings settings;               // the given keys, except those of structured parts
+struct SceneFile : SceneParts {
+  Settings settings;                  // the given keys, except those of structured parts
   std::optional<CameraEntry> camera;  // [camera] with `position`, or of another file
   std::vector<ProbeTurn> probeTurns;  // ascending, may be empty
   std::optional<Lens> lens;
   std::optional<Optics> optics;
-  std::vector<Lamp> lamps;              // [[light]]
-  std::vector<SourceEntry> sources;     // [[source]]
-  std::vector<std::string> lightLists;  // files that lamps and sources are from
   std::optional<CompositeEntry> composite;
   std::optional<std::string> plateScale;  // location of `[probe] scale = "plate"`
-  std::optional<SurroundingsEntry> surroundings;
-  Origins origins;                    // of the entries above
-  std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
 };
 
 // Throws InputError "FILE:LINE: ..." for a file that is not TOML, an unknown key (with the nearest

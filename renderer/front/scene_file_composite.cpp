@@ -5,8 +5,7 @@ namespace chromeball {
 namespace {
 
 void readGround(const Section& section, CompositeEntry& composite, Origins& origins) {
-  if (const Entry e = section["ground_reflectance"])
-    composite.groundReflectance = e.isArray() ? e.vector() : Rgb(float(e.number()));
+  if (const Entry e = section["ground_reflectance"]) composite.groundReflectance = e.oneOrThree();
   if (const Entry e = section["ground_reflectance_range"]) {
     if (!e.isArrayOf(2)) e.mustBe(e.setting->form);
     origins.set("composite.ground_reflectance_range", e.location());
@@ -28,8 +27,7 @@ void readComposite(const Section& section, SceneFile& scene) {
   const Entry local = section["local_scene"];
   if (!local && !hasGround)
     failAt(section.location(),
-           "[composite] has no `local_scene`; name its nodes, or give "
-           "`ground = true` for a plane");
+           "[composite] has no `local_scene`; name its nodes, or give `ground = true` for a plane");
   forEach(local, [&](const Entry& e) {
     scene.origins.set(elementName("composite.entry.localScene", composite.localScene.size()),
                       e.location());

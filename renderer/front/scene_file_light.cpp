@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "front/arguments.h"
 #include "front/polygon_file.h"
 #include "lighting/export/light_list.h"
@@ -28,13 +30,7 @@ const std::vector<LampType> kTypes = {
 const LampType& typeOf(const Section& light) {
   const Entry type = light["type"];
   const std::string name = type ? type.choice() : light["file"] ? "list" : "sun";
-  return *std::find_if(kTypes.begin(), kTypes.end(),
-                       [&](const LampType& t) { return t.name == name; });
-}
-
-// A number for grey, or three.
-Rgb readColor(const Entry& entry) {
-  return entry.isArray() ? entry.vector() : Rgb(float(entry.number()));
+  return *std::ranges::find(kTypes, name, &LampType::name);
 }
 
 vec3 readDirection(const Section& light) {
@@ -49,7 +45,7 @@ Rgb readStrength(const Section& light, std::string_view key, float ofOneWatt) {
   const Entry own = light[key], power = light["power"];
   if (own && power) failAt(power.location(), "[[light]] has `{}`; it cannot have `power` too", key);
   if (!own && !power) failAt(light.location(), "[[light]] has neither `{}` nor `power`", key);
-  return own ? readColor(own) : readColor(power) * ofOneWatt;
+  return own ? own.oneOrThree() : power.oneOrThree() * ofOneWatt;
 }
 
 PunctualLight readPunctual(const Section& light, bool isSpot) {
@@ -89,7 +85,7 @@ SunLamp readSun(const Section& light) {
   lamp.sun.irradiance = glm::dvec3(1);
   const glm::dvec3 ofOne = lamp.sun.radiance();
   lamp.sun.irradiance =
-      irradiance ? glm::dvec3(readColor(irradiance)) : glm::dvec3(readColor(radiance)) / ofOne;
+      irradiance ? glm::dvec3(irradiance.oneOrThree()) : glm::dvec3(radiance.oneOrThree()) / ofOne;
   if (!isFinite(Rgb(lamp.sun.radiance())))
     failAt((irradiance ? irradiance : radiance).location(),
            "the sun's radiance, {:.3g} of its irradiance for an angle of {:.3g} degrees, exceeds "

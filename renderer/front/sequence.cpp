@@ -85,10 +85,10 @@ std::string withNumber(const std::string& pattern, int number) {
          pattern.substr(last + 1);
 }
 
-Sequence::Sequence(const SceneFile& scene, const Settings& given) : scene_(scene), given_(given) {
-  Settings all = scene.settings;
-  all.merge(given);
-  check(all, given);
+Sequence::Sequence(const SceneFile& scene, const Settings& given)
+    : scene_(scene), given_(given), all_(scene.settings) {
+  all_.merge(given);
+  check(all_, given);
   if (!given.has("frames")) return;
   const FrameRange range = rangeOf(given);
   for (int number = range.first; number <= range.last; number += range.step)
@@ -108,20 +108,18 @@ SequenceFrame Sequence::frame(int number) const {
   if (given_.has("output.file")) frame.scene.settings.erase("output.file");
   nameFiles(frame.scene.settings, number);
   nameFiles(frame.given, number);
-  Settings all = scene_.settings;
-  all.merge(given_);
   Settings& s = frame.given;
-  s.set("model.time", number / all.get<double>("fps"), "--frames");
-  if (const auto orbit = all.getIfGiven<double>("orbit")) {
+  s.set("model.time", number / all_.get<double>("fps"), "--frames");
+  if (const auto orbit = all_.getIfGiven<double>("orbit")) {
     s.set("orbit", *orbit * (number - first_) / (end_ - first_), given_.location("orbit"));
-    if (all.has("camera.shutter")) s.set("orbit-step", *orbit / (end_ - first_), "--orbit");
+    if (all_.has("camera.shutter")) s.set("orbit-step", *orbit / (end_ - first_), "--orbit");
   }
-  if (const auto pattern = all.getIfGiven<std::string>("probe-sequence")) {
+  if (const auto pattern = all_.getIfGiven<std::string>("probe-sequence")) {
     s.set("probe.file", withNumber(*pattern, number), given_.location("probe-sequence"));
     s.erase("probe-sequence");
   }
-  if (all.get<bool>("seed-per-frame"))
-    s.set("render.seed", all.get<uint64_t>("render.seed") + uint64_t(number), "--seed-per-frame");
+  if (all_.get<bool>("seed-per-frame"))
+    s.set("render.seed", all_.get<uint64_t>("render.seed") + uint64_t(number), "--seed-per-frame");
   return frame;
 }
 
@@ -130,9 +128,8 @@ Messages Sequence::messages() const {
   for (size_t i = 0; !numbers_.empty() && i < scene_.models.size(); ++i)
     if (const std::string time = elementName("models", i) + ".choice.animation.seconds";
         scene_.origins.has(time))
-      messages.push_back({Message::Kind::Warning,
-                          fmt::format("{}: `time` has no effect: frames have times of their own",
-                                      scene_.origins.of(time))});
+      addWarning(messages, "{}: `time` has no effect: frames have times of their own",
+                 scene_.origins.of(time));
   return messages;
 }
 

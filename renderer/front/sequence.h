@@ -31,6 +31,7 @@ class Sequence {
  private:
   const SceneFile& scene_;
   const Settings& given_;
+  Settings all_;
   int first_ = 0, end_ = 1;  // the end: the frame after the last
   std::vector<int> numbers_;
 };

@@ -16,6 +16,22 @@ namespace {
 
 using Type = SettingType;
 
+constexpr SettingTypeInfo kTypeInfos[] = {
+    {"flag", "true or false", 0},
+    {"integer", "", 1},
+    {"number", "", 2},
+    {"number or `\"off\"`", "\"off\" or a factor, 0 or more", 2},
+    {"", "", 3},
+    {"name", "", 4},
+    {"name, or an array", "", 5},
+    {"string", "a string", 4},
+    {"file", "a file name", 4},
+    {"file, or an array", "a file name", 5},
+    {"`[width, height]`", "[width, height]", 6},
+    {"", "", std::variant_npos},
+};
+static_assert(std::size(kTypeInfos) == size_t(Type::Compound) + 1);
+
 std::string describeRange(const Range& range, bool whole) {
   const auto number = [](double x) {
     return x == std::floor(x) && std::abs(x) < 1e15 ? fmt::format("{:.0f}", x)
@@ -39,20 +55,17 @@ std::string describeRange(const Range& range, bool whole) {
 }
 
 void checkChoice(const Setting& setting, const std::string& name, const std::string& location) {
-  const std::vector<std::string_view> known = setting.choices();
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throwInput("{}: `{}` is not known; {}", location, printableName(name), didYouMean(name, known));
+  if (std::ranges::count(setting.choices, name) == 0)
+    throwInput("{}: `{}` is not known; {}", location, printableName(name),
+               didYouMean(name, setting.choices));
 }
 
 // Splits words at commas; each word may contain several names.
 std::vector<std::string> split(const std::vector<std::string>& words) {
   std::vector<std::string> names;
   for (const std::string& word : words)
-    for (size_t begin = 0; begin <= word.size();) {
-      const size_t end = std::min(word.find(',', begin), word.size());
-      if (end > begin) names.push_back(word.substr(begin, end - begin));
-      begin = end + 1;
-    }
+    for (const std::string_view name : splitAt(word, ','))
+      if (!name.empty()) names.emplace_back(name);
   return names;
 }
 
@@ -69,19 +82,9 @@ double parseNumber(const Setting& setting, std::string text, const std::string& 
 std::vector<double> parseList(const Setting& setting, const std::string& text,
                               const std::string& location) {
   std::vector<double> numbers;
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    if (!toNumber(std::string_view(text).substr(begin, end - begin), numbers.emplace_back()))
-      refuse(setting, text, location);
-    begin = end + 1;
-  }
+  for (const std::string_view part : splitAt(text, ','))
+    if (!toNumber(part, numbers.emplace_back())) refuse(setting, text, location);
   return numbers;
-}
-
-// One of several numbers.
-std::string expectedElement(Setting setting) {
-  setting.type = Type::Number;
-  return expected(setting);
 }
 
 void checkNumbers(const Setting& setting, const SettingValue& value, const std::string& location) {
@@ -90,43 +93,34 @@ void checkNumbers(const Setting& setting, const SettingValue& value, const std::
     refuse(setting, toText(value), location);
   for (const double x : numbers)
     if (!(std::abs(x) <= FLT_MAX) || !setting.range.contains(x))
-      throwInput("{}: `{}` is not {}", location, x, expectedElement(setting));
+      throwInput("{}: `{}` is not {}", location, x, expectedNumber(setting, setting.range));
 }
 
 }  // namespace
 
 std::string Setting::name() const {
-  if (key.empty()) return std::string(option);
+  if (key.empty()) return option;
   return section.empty() ? std::string(key) : fmt::format("{}.{}", section, key);
 }
 
+const SettingTypeInfo& infoOf(SettingType type) { return kTypeInfos[size_t(type)]; }
+
 std::string expected(const Setting& s) {
+  if (const std::string_view always = infoOf(s.type).expected; !always.empty())
+    return std::string(always);
   const std::string unit = s.unit.empty() ? "" : fmt::format(" ({})", s.unit);
-  switch (s.type) {
-    case Type::Flag:
-      return "true or false";
-    case Type::Integer:
-      return describeRange(s.range, true) + unit;
-    case Type::Number:
-      return describeRange(s.range, false) + unit;
-    case Type::Factor:
-      return "\"off\" or a factor, 0 or more";
-    case Type::Choice:
-      return fmt::format("one of {}", fmt::join(s.choices(), ", "));
-    case Type::Choices:
-      return fmt::format("one or several of {}", fmt::join(s.choices(), ", "));
-    case Type::Name:
-      return "a string";
-    case Type::File:
-    case Type::Files:
-      return "a file name";
-    case Type::Size:
-      return "[width, height]";
-    case Type::Numbers:
-    case Type::Compound:
-      break;
-  }
+  if (s.type == Type::Integer || s.type == Type::Number)
+    return describeRange(s.range, s.type == Type::Integer) + unit;
+  if (s.type == Type::Choice) return fmt::format("one of {}", fmt::join(s.choices, ", "));
+  if (s.type == Type::Choices)
+    return fmt::format("one or several of {}", fmt::join(s.choices, ", "));
   return std::string(s.form);
+}
+
+std::string expectedNumber(Setting setting, const Range& range) {
+  if (setting.type == Type::Compound || setting.type == Type::Numbers) setting.type = Type::Number;
+  setting.range = range;
+  return expected(setting);
 }
 
 SettingValue parseSetting(const Setting& setting, const std::vector<std::string>& words,
@@ -168,47 +162,34 @@ SettingValue parseSetting(const Setting& setting, const std::vector<std::string>
 }
 
 void checkSetting(const Setting& setting, const SettingValue& value, const std::string& location) {
-  const auto refuseNumber = [&](auto x) { refuse(setting, fmt::format("{}", x), location); };
-  const auto requireType = [&](bool matches) {
-    if (!matches) refuse(setting, toText(value), location);
-  };
+  if (setting.type == Type::Compound)
+    throwInput("{}: `{}` belongs into a scene file", location, setting.name());
+  if (value.index() != infoOf(setting.type).alternative) refuse(setting, toText(value), location);
   switch (setting.type) {
-    case Type::Flag:
-      return requireType(std::holds_alternative<bool>(value));
     case Type::Integer:
-      requireType(std::holds_alternative<uint64_t>(value));
-      if (const uint64_t x = std::get<uint64_t>(value); !setting.range.contains(double(x)))
-        refuseNumber(x);
+      if (!setting.range.contains(double(std::get<uint64_t>(value))))
+        refuse(setting, toText(value), location);
       return;
     case Type::Number:
     case Type::Factor:
-      requireType(std::holds_alternative<double>(value));
       if (const double x = std::get<double>(value);
           !(std::abs(x) <= FLT_MAX) || !setting.range.contains(x))
-        refuseNumber(x);
+        refuse(setting, toText(value), location);
       return;
     case Type::Numbers:
-      requireType(std::holds_alternative<std::vector<double>>(value));
       return checkNumbers(setting, value, location);
     case Type::Choice:
-      requireType(std::holds_alternative<std::string>(value));
       return checkChoice(setting, std::get<std::string>(value), location);
     case Type::Choices:
-      requireType(std::holds_alternative<std::vector<std::string>>(value));
       for (const std::string& name : std::get<std::vector<std::string>>(value))
         checkChoice(setting, name, location);
       return;
-    case Type::Files:
-      return requireType(std::holds_alternative<std::vector<std::string>>(value));
     case Type::Name:
     case Type::File:
-      requireType(std::holds_alternative<std::string>(value));
       if (std::get<std::string>(value).empty()) throwInput("{}: is empty", location);
       return;
-    case Type::Size:
-      return requireType(std::holds_alternative<ImageSize>(value));
-    case Type::Compound:
-      throwInput("{}: `{}` belongs into a scene file", location, setting.name());
+    default:
+      return;
   }
 }
 

@@ -33,6 +33,14 @@ enum class SettingType {
   Compound,  // a structured key with its own reader; `form` describes it
 };
 
+// What the settings of a type have in common.
+struct SettingTypeInfo {
+  std::string_view form;      // in the reference page; empty: the setting's own
+  std::string_view expected;  // describes valid values; empty: these depend on the setting
+  size_t alternative;         // of SettingValue
+};
+const SettingTypeInfo& infoOf(SettingType type);
+
 // The range of an Integer, of a Number, or of the elements of Numbers or a Compound.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
@@ -53,12 +61,14 @@ enum class Effect {
 };
 
 struct Setting {
-  std::string_view section;        // of the scene file; empty: none
-  std::string_view key;            // empty: the command line only
-  std::string_view option;         // without dashes; empty: the scene file only
-  char letter = 0;                 // short form of the option
-  std::string_view argument = {};  // name of the option's argument in --help: "N", "SECONDS"
-  std::string_view bare = {};      // the value of an option without "=ARGUMENT"; empty: not allowed
+  std::string_view section;  // of the scene file; empty: none
+  std::string_view key;      // empty: the command line only
+  std::string option;        // without dashes; empty: the scene file only
+  char letter = 0;           // short form of the option
+  // The name of the option's argument in --help: "SECONDS"; a row that gives none has "N" for an
+  // Integer, "NAME" for a Choice.
+  std::string_view argument = {};
+  std::string_view bare = {};  // the value of an option without "=ARGUMENT"; empty: not allowed
   SettingType type;
   std::string_view form = {};       // of a Compound or of Numbers: "three numbers"
   std::vector<size_t> counts = {};  // of Numbers: how many there may be
@@ -66,7 +76,7 @@ struct Setting {
   std::string_view unit = {};
   std::string fallback = {};     // the default, in the syntax of the option; empty: none
   std::string_view absent = {};  // if there is no default: describes the behaviour without a value
-  std::vector<std::string_view> (*choices)() = nullptr;  // listed also for a Name
+  std::vector<std::string_view> choices = {};  // listed also for a Name
   std::string_view help;
   Effect effect = Effect::Image;
   bool renderOnly = false;  // not an option of `chromeball compare`, which varies or ignores it
@@ -77,6 +87,8 @@ struct Setting {
 
 // Describes valid values: "a whole number from 1 to 20", "a finite number above 0 (seconds)".
 std::string expected(const Setting& setting);
+// The same for one number of the setting, in another range.
+std::string expectedNumber(Setting setting, const Range& range);
 
 // The value of an option's arguments (none for a flag). Throws InputError, begun by `location`.
 SettingValue parseSetting(const Setting& setting, const std::vector<std::string>& words,

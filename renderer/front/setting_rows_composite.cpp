@@ -2,135 +2,97 @@
 #include "front/settings.h"
 
 namespace chromeball {
-namespace {
 
-using Names = std::vector<std::string_view>;
-using enum SettingType;
-
-void addComposite(std::vector<Setting>& rows) {
-  const auto add = [&](Setting row) {
-    row.section = "composite";
-    rows.push_back(std::move(row));
-  };
-  add({.key = "plate",
+std::vector<Setting> compositeRows() {
+  using enum SettingType;
+  return {
+      {.key = "plate",
        .type = File,
        .absent = "required but for a shadow catcher",
-       .help = "The photograph: linear .exr, .hdr, .pfm; others are decoded from sRGB."});
-  add({.key = "local_scene",
+       .help = "The photograph: linear .exr, .hdr, .pfm; others are decoded from sRGB."},
+      {.key = "local_scene",
        .type = Compound,
        .form = "a node's name, or several",
        .absent = "required without `ground`",
        .help = "Nodes that model real surfaces in the photograph, including their descendants; all "
-               "other nodes of the model are synthetic objects."});
-  add({.key = "ground",
+               "other nodes of the model are synthetic objects."},
+      {.key = "ground",
        .type = Flag,
        .help =
            "Adds the ground to the local scene: a level plane, as far as the camera sees it and "
-           "the objects matter."});
-  add({.key = "ground_height",
+           "the objects matter."},
+      {.key = "ground_height",
        .type = Number,
        .unit = "metres",
        .fallback = "0",
-       .help = "The ground's y coordinate."});
-  add({.key = "ground_reflectance",
+       .help = "The ground's y coordinate."},
+      {.key = "ground_reflectance",
        .type = Compound,
        .form = "a number (grey), or three",
        .range = {.min = 0.001, .max = 1},
        .absent = "0.25",
        .help = "The ground's base colour where `reflectance` does not find it, and on average for "
-               "`[probe] scale = \"plate\"`."});
-  add({.key = "ground_reflectance_range",
+               "`[probe] scale = \"plate\"`."},
+      {.key = "ground_reflectance_range",
        .type = Compound,
        .form = "two numbers, [least, most]",
        .range = {.min = 0.001, .max = 1},
        .absent = "0.1, 0.5: asphalt to dry sand",
        .help = "Between what the ground's reflectance may be: the uncertainty of "
-               "`[probe] scale = \"plate\"`."});
-  add({.key = "mode",
+               "`[probe] scale = \"plate\"`."},
+      {.key = "mode",
        .type = Choice,
        .fallback = "difference",
-       .choices =
-           [] {
-             return Names{"difference", "ratio", "shadow-catcher"};
-           },
+       .choices = {"difference", "ratio", "shadow-catcher"},
        .help =
            "alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj), or plate x L_obj / L_noobj; or "
            "the objects and their shadows, without a plate, as a premultiplied image with alpha "
-           "to be laid over one."});
-  add({.key = "reflectance",
+           "to be laid over one."},
+      {.key = "reflectance",
        .type = Choice,
        .absent = "model; with `ground` flat, or plate if the local scene has more or other lights",
-       .choices =
-           [] {
-             return Names{"model", "plate", "flat"};
-           },
+       .choices = {"model", "plate", "flat"},
        .help = "The local scene's base colour: the model's, found from the plate by rendering, or "
-               "found from the plate by the exact irradiance of a flat local scene."});
-  add({.key = "iterations",
+               "found from the plate by the exact irradiance of a flat local scene."},
+      {.key = "iterations",
        .type = Integer,
        .range = {.min = 1, .max = 20},
        .fallback = "2",
        .help =
            "Iterations of `reflectance = \"plate\"`; one suffices if no part of the local scene "
-           "sees another."});
-  add({.key = "specular",
+           "sees another."},
+      {.key = "specular",
        .type = Number,
        .range = {.min = 0, .max = 1},
        .absent = "the model's gloss; 1 if `roughness` is given",
-       .help = "Strength of the local scene's gloss; 1 is an index of refraction of 1.5."});
-  add({.key = "roughness",
+       .help = "Strength of the local scene's gloss; 1 is an index of refraction of 1.5."},
+      {.key = "roughness",
        .type = Number,
        .range = {.min = 0, .max = 1},
        .absent = "the model's gloss; 0.2 if `specular` is given",
-       .help = "Roughness of the local scene's gloss, as in glTF."});
+       .help = "Roughness of the local scene's gloss, as in glTF."},
+  };
 }
 
-void addSurroundings(std::vector<Setting>& rows) {
-  const auto add = [&](Setting row) {
-    row.section = "surroundings";
-    rows.push_back(std::move(row));
-  };
-  const auto point = [&](std::string_view key, std::string_view absent, std::string_view help) {
-    add({.key = key,
-         .type = Compound,
-         .form = "three numbers",
-         .unit = "metres",
-         .absent = absent,
-         .help = help});
-  };
-  add({.key = "shape",
+std::vector<Setting> surroundingsRows() {
+  using enum SettingType;
+  return {
+      {.key = "shape",
        .type = Choice,
        .absent = "required",
-       .choices =
-           [] {
-             return Names{"box", "sphere", "model"};
-           },
-       .help = "A box or a sphere that holds the whole model, or a model of the room."});
-  point("min", "required for a box", "The box's corner with the smallest coordinates.");
-  point("max", "required for a box", "The box's corner with the largest coordinates.");
-  point("center", "required for a sphere", "The sphere's centre.");
-  add({.key = "radius",
-       .type = Compound,
-       .form = "a number",
-       .range = kPositive,
-       .unit = "metres",
-       .absent = "required for a sphere",
-       .help = "The sphere's radius."});
-  add({.key = "file",
+       .choices = {"box", "sphere", "model"},
+       .help = "A box or a sphere that holds the whole model, or a model of the room."},
+      pointRow("min", "required for a box", "The box's corner with the smallest coordinates."),
+      pointRow("max", "required for a box", "The box's corner with the largest coordinates."),
+      pointRow("center", "required for a sphere", "The sphere's centre."),
+      numberRow("radius", kPositive, "metres", "required for a sphere", "The sphere's radius."),
+      {.key = "file",
        .type = File,
        .absent = "required for a model",
-       .help = "A glTF file of the room; only its geometry is used."});
-  point("capture", "the middle; required for a model",
-        "The position at which the probe was captured, inside.");
-}
-
-}  // namespace
-
-std::vector<Setting> compositeRows() {
-  std::vector<Setting> rows;
-  addComposite(rows);
-  addSurroundings(rows);
-  return rows;
+       .help = "A glTF file of the room; only its geometry is used."},
+      pointRow("capture", "the middle; required for a model",
+               "The position at which the probe was captured, inside."),
+  };
 }
 
 }  // namespace chromeball

@@ -4,130 +4,74 @@
 #include "scene/motion.h"
 
 namespace chromeball {
-namespace {
 
-using Names = std::vector<std::string_view>;
-using enum SettingType;
-
-Names mappings() {
-  return {"auto", "lat-long", "angular", "mirror-ball", "cube-cross", "cube-strip", "cube-3x2"};
-}
-
-Names strategies() {
-  Names names = strategyNames();
-  names.insert(names.begin(), "auto");
-  return names;
-}
-
-void addModel(std::vector<Setting>& rows) {
-  const auto add = [&](Setting row) {
-    row.section = "model";
-    rows.push_back(std::move(row));
-  };
-  add({.key = "file", .type = File, .absent = "required", .help = "A model: .gltf or .glb."});
-  add({.key = "translation",
-       .type = Compound,
-       .form = "three numbers",
-       .unit = "metres",
-       .absent = "0, 0, 0",
-       .help = "Translation of the model."});
-  add({.key = "rotation",
+std::vector<Setting> modelRows() {
+  using enum SettingType;
+  return {
+      {.key = "file", .type = File, .absent = "required", .help = "A model: .gltf or .glb."},
+      pointRow("translation", "0, 0, 0", "Translation of the model."),
+      {.key = "rotation",
        .type = Compound,
        .form = "three angles, or a quaternion x, y, z, w",
        .unit = "degrees",
        .absent = "none",
-       .help = "Turns the model about the fixed axes X, then Y, then Z; or as glTF's rotation."});
-  add({.key = "scale",
+       .help = "Turns the model about the fixed axes X, then Y, then Z; or as glTF's rotation."},
+      {.key = "scale",
        .type = Compound,
        .form = "a number other than 0, or three",
        .absent = "1",
-       .help = "Scales the model along X, Y and Z."});
-  add({.key = "animation",
-       .option = "animation",
+       .help = "Scales the model along X, Y and Z."},
+      {.key = "animation",
        .argument = "NAME",
        .type = Name,
        .absent = "the first if `time` is given, else the rest pose",
-       .help = "Shows the models in the pose of this animation."});
-  add({.key = "time",
+       .help = "Shows the models in the pose of this animation."},
+      {.key = "time",
        .option = "animation-time",
        .argument = "SECONDS",
        .type = Number,
        .unit = "seconds",
        .absent = "0",
-       .help = "The time of the animation."});
-  add({.key = "variant",
-       .option = "variant",
+       .help = "The time of the animation."},
+      {.key = "variant",
        .argument = "NAME",
        .type = Name,
        .absent = "the default materials",
-       .help = "Shows the models in this variant of their materials (KHR_materials_variants)."});
+       .help = "Shows the models in this variant of their materials (KHR_materials_variants)."},
+  };
 }
 
-void addCamera(std::vector<Setting>& rows) {
-  const auto add = [&](Setting row) {
-    row.section = "camera";
-    rows.push_back(std::move(row));
-  };
-  add({.key = "name",
+std::vector<Setting> cameraRows() {
+  using enum SettingType;
+  return {
+      {.key = "name",
        .option = "camera",
        .argument = "NAME",
        .type = Name,
        .absent = "the model's first camera",
-       .help = "One of the model's cameras, by its own name or that of its node."});
-  add({.key = "file",
+       .help = "One of the model's cameras, by its own name or that of its node."},
+      {.key = "file",
        .option = "camera-file",
        .argument = "FILE.toml",
        .type = File,
        .absent = "none",
        .help = "A file with a [camera] of its own, principal point and distortion included, as "
-               "`chromeball camera solve` writes it."});
-  add({.key = "position",
-       .type = Compound,
-       .form = "three numbers",
-       .unit = "metres",
-       .absent = "none",
-       .help = "Position of the camera."});
-  add({.key = "look_at",
-       .type = Compound,
-       .form = "three numbers",
-       .unit = "metres",
-       .absent = "none",
-       .help = "The point in the middle of the image."});
-  add({.key = "up",
+               "`chromeball camera solve` writes it."},
+      pointRow("position", "none", "Position of the camera."),
+      pointRow("look_at", "none", "The point in the middle of the image."),
+      {.key = "up",
        .type = Compound,
        .form = "three numbers",
        .absent = "0, 1, 0",
-       .help = "The direction that is up in the image."});
-  add({.key = "fov",
-       .type = Compound,
-       .form = "a number",
-       .range = {.min = 0, .max = 180, .excludesMin = true, .excludesMax = true},
-       .unit = "degrees",
-       .absent = "39.6",
-       .help = "Vertical field of view."});
-  add({.key = "orthographic",
-       .type = Compound,
-       .form = "a number",
-       .range = kPositive,
-       .unit = "metres",
-       .absent = "perspective",
-       .help = "Parallel projection: the height of the view."});
-  add({.key = "aperture",
-       .type = Compound,
-       .form = "a number",
-       .range = kPositive,
-       .unit = "metres",
-       .absent = "a pinhole",
-       .help = "Diameter of the lens (thin lens)."});
-  add({.key = "focus",
-       .type = Compound,
-       .form = "a number",
-       .range = kPositive,
-       .unit = "metres",
-       .absent = "none",
-       .help = "Distance of the plane in focus, along the camera's axis."});
-  add({.key = "shutter",
-       .option = "shutter",
+       .help = "The direction that is up in the image."},
+      numberRow("fov", {.min = 0, .max = 180, .excludesMin = true, .excludesMax = true}, "degrees",
+                "39.6", "Vertical field of view."),
+      numberRow("orthographic", kPositive, "metres", "perspective",
+                "Parallel projection: the height of the view."),
+      numberRow("aperture", kPositive, "metres", "a pinhole", "Diameter of the lens (thin lens)."),
+      numberRow("focus", kPositive, "metres", "none",
+                "Distance of the plane in focus, along the camera's axis."),
+      {.key = "shutter",
        .argument = "FRAMES",
        .type = Number,
        .range = {.min = 0, .max = 100},
@@ -136,51 +80,48 @@ void addCamera(std::vector<Setting>& rows) {
        .help = "Motion blur: how long the shutter is open, from the time of the frame or of "
                "--animation-time on; 0.5 is a shutter of 180 degrees. What moves meanwhile: nodes, "
                "skins and morphs of an animation, its cameras and lamps, and the orbit of the "
-               "camera."});
-  add({.key = "shutter_steps",
-       .option = "shutter-steps",
-       .argument = "N",
+               "camera."},
+      {.key = "shutter_steps",
        .type = Integer,
        .range = {.min = 1, .max = kMostMotionSteps},
        .absent = "8",
        .help = "While the shutter is open, vertices, lamps and camera move along so many straight "
-               "lines, one after the other; a warning says if they are far from the true motion."});
-  add({.key = "principal_point",
+               "lines, one after the other; a warning says if they are far from the true motion."},
+      {.key = "principal_point",
        .type = Compound,
        .form = "two numbers",
        .range = {.min = -10, .max = 10},
        .unit = "fractions of the image's width and height",
        .absent = "0.5, 0.5: the middle",
        .help = "Where the lens's axis meets the image, from the top left: a lens that is shifted, "
-               "or a photograph that was cropped."});
-  add({.key = "distortion",
+               "or a photograph that was cropped."},
+      {.key = "distortion",
        .type = Compound,
        .form = "a number, k1, or two, [k1, k2]",
        .absent = "none",
        .help = "The lens's radial distortion: what a pinhole would show at (x, y) focal lengths "
                "from the principal point appears at (1 + k1 r^2 + k2 r^4) (x, y), r^2 = x^2 + y^2. "
-               "`fov` is that of the pinhole."});
+               "`fov` is that of the pinhole."},
+  };
 }
 
-void addProbe(std::vector<Setting>& rows) {
-  const auto add = [&](Setting row) {
-    row.section = "probe";
-    rows.push_back(std::move(row));
-  };
-  add({.key = "file",
+std::vector<Setting> probeRows() {
+  using enum SettingType;
+  return {
+      {.key = "file",
        .option = "probe",
        .argument = "FILE",
        .type = File,
        .absent = "the model's own light",
-       .help = "Light probe: an HDR image of all directions (.hdr, .exr, .pfm, ...)."});
-  add({.key = "mapping",
+       .help = "Light probe: an HDR image of all directions (.hdr, .exr, .pfm, ...)."},
+      {.key = "mapping",
        .option = "probe-mapping",
-       .argument = "NAME",
        .type = Choice,
        .fallback = "auto",
-       .choices = mappings,
-       .help = "How the probe's image maps to directions; auto detects it."});
-  add({.key = "rotation",
+       .choices = {"auto", "lat-long", "angular", "mirror-ball", "cube-cross", "cube-strip",
+                   "cube-3x2"},
+       .help = "How the probe's image maps to directions; auto detects it."},
+      {.key = "rotation",
        .option = "probe-rotation",
        .argument = "YAW[,PITCH,ROLL]",
        .type = Numbers,
@@ -189,15 +130,15 @@ void addProbe(std::vector<Setting>& rows) {
        .unit = "degrees",
        .fallback = "0",
        .help = "Turns the environment about the fixed axes Z (roll), then X (pitch), then Y (yaw), "
-               "counter-clockwise seen from the tip of the axis: yaw from above."});
-  add({.key = "rotation_keys",
+               "counter-clockwise seen from the tip of the axis: yaw from above."},
+      {.key = "rotation_keys",
        .type = Compound,
        .form = "pairs [seconds, rotation], each later than the one before",
        .absent = "`rotation` at all times",
        .help = "The rotation at times of an animation, as a number or an array like `rotation`; "
                "between them linear in the yaw, or the shortest way if one is tilted; see --frames "
-               "and --animation-time."});
-  add({.key = "scale",
+               "and --animation-time."},
+      {.key = "scale",
        .option = "probe-scale",
        .argument = "R[,G,B]",
        .type = Numbers,
@@ -207,87 +148,61 @@ void addProbe(std::vector<Setting>& rows) {
        .fallback = "1",
        .help =
            "Factor on the probe's radiance. In the scene file also \"plate\": for each channel, "
-           "what a composite's ground needs to look as in the plate (`ground_reflectance`)."});
+           "what a composite's ground needs to look as in the plate (`ground_reflectance`)."},
+  };
 }
 
-void addLighting(std::vector<Setting>& rows) {
-  const auto add = [&](Setting row) {
-    row.section = "lighting";
-    rows.push_back(std::move(row));
-  };
-  add({.key = "strategy",
-       .option = "strategy",
+std::vector<Setting> lightingRows() {
+  using enum SettingType;
+  std::vector<std::string_view> strategies = strategyNames();
+  strategies.insert(strategies.begin(), "auto");
+  return {
+      {.key = "strategy",
        .argument = "NAME[:COUNT]",
        .type = Name,
        .fallback = "auto",
        .choices = strategies,
        .help = "How the probe is sampled. A COUNT is for strategies that make lights or regions.",
-       .renderOnly = true});
-  add({.key = "mis",
-       .option = "mis",
-       .argument = "NAME",
+       .renderOnly = true},
+      {.key = "mis",
        .type = Choice,
        .fallback = "balance",
-       .choices =
-           [] {
-             return Names{"off", "balance", "power"};
-           },
-       .help = "Heuristic of multiple importance sampling."});
-  add({.key = "sun_angle",
-       .option = "sun-angle",
+       .choices = {"off", "balance", "power"},
+       .help = "Heuristic of multiple importance sampling."},
+      {.key = "sun_angle",
        .argument = "DEGREES",
        .type = Number,
        .range = kSunAngle,
        .unit = "degrees",
        .absent = "as measured in the probe",
        .help = "Diameter of the discs of the strategy `suns`; their irradiance stays. The Sun's is "
-               "0.5323."});
-  add({.key = "from",
+               "0.5323."},
+      {.key = "from",
        .option = "light-from",
        .argument = "PART",
        .type = Choice,
        .fallback = "all",
-       .choices =
-           [] {
-             return Names{"all", "suns", "rest"};
-           },
+       .choices = {"all", "suns", "rest"},
        .help = "What lights the scene: all, only the suns of the probe and of [[light]], or all "
-               "but these. The two parts add up to the whole."});
-  add({.key = "show_lights",
-       .option = "show-lights",
+               "but these. The two parts add up to the whole."},
+      {.key = "show_lights",
        .type = Flag,
        .help = "The camera and mirrors see, instead of the probe, the lights by which the strategy "
                "replaces it: discs of at least a degree.",
-       .renderOnly = true});
-  add({.key = "lights",
-       .option = "lights",
+       .renderOnly = true},
+      {.key = "lights",
        .argument = "FACTOR",
        .type = Factor,
        .range = kNotNegative,
        .fallback = "1",
-       .help = "Factor on the models' own punctual lights, or off; surfaces that emit stay."});
-  add({.key = "light_units",
-       .option = "light-units",
-       .argument = "NAME",
+       .help = "Factor on the models' own punctual lights, or off; surfaces that emit stay."},
+      {.key = "light_units",
        .type = Choice,
        .fallback = "photometric",
-       .choices =
-           [] {
-             return Names{"photometric", "radiometric"};
-           },
+       .choices = {"photometric", "radiometric"},
        .help = "Units of the models' punctual lights: candela and lux at 683 lm/W, as Blender "
-               "writes them, or W/sr and W/m^2."});
-}
-
-}  // namespace
-
-std::vector<Setting> sceneRows() {
-  std::vector<Setting> rows;
-  addModel(rows);
-  addCamera(rows);
-  addProbe(rows);
-  addLighting(rows);
-  return rows;
+               "writes them, or W/sr and W/m^2."},
+  };
 }
 
 }  // namespace chromeball

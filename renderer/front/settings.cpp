@@ -1,15 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "front/settings.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace chromeball {
+namespace {
+
+std::string_view usualArgument(SettingType type) {
+  return type == SettingType::Choice ? "NAME" : type == SettingType::Integer ? "N" : "";
+}
+
+void completeRow(const SettingSection& section, Setting& row) {
+  row.section = section.name;
+  if (row.argument.empty() && (section.keysAreOptions || !row.option.empty()))
+    row.argument = usualArgument(row.type);
+  if (!section.keysAreOptions || !row.option.empty()) return;
+  if (row.argument.empty() && row.type != SettingType::Flag) return;
+  row.option = row.key;
+  std::ranges::replace(row.option, '_', '-');
+}
+
+}  // namespace
 
 const std::vector<Setting>& settingTable() {
   static const std::vector<Setting> table = [] {
-    std::vector<Setting> all = sceneRows();
-    for (const auto rows : {lightRows, sourceRows, renderRows, compositeRows, commandRows})
-      for (Setting& row : rows()) all.push_back(std::move(row));
+    std::vector<Setting> all;
+    for (const SettingSection& section : settingSections())
+      for (Setting& row : section.rows()) {
+        completeRow(section, row);
+        all.push_back(std::move(row));
+      }
     return all;
   }();
   return table;
@@ -19,40 +40,78 @@ std::span<const SettingSection> settingSections() {
   static constexpr SettingSection sections[] = {
       {"model", "model", "Models",
        "One or several glTF files: `model = \"a.glb\"`, `model = [\"a.glb\", \"b.glb\"]`, or "
-       "tables `[[model]]` with the keys below. A model is scaled, then rotated, then moved."},
+       "tables `[[model]]` with the keys below. A model is scaled, then rotated, then moved.",
+       modelRows, true},
       {"camera", "[camera]", "Camera",
        "A camera of the model by `name`, or one of its own: `position` and `look_at`, and `up`, "
        "`fov` or `orthographic`, here or in a `file`. Without either, the model's first camera "
        "renders, or one that frames the model. `aperture` and `focus` go together; these, "
-       "`principal_point` and `distortion` apply to any perspective camera."},
+       "`principal_point` and `distortion` apply to any perspective camera.",
+       cameraRows, true},
       {"probe", "[probe]", "Probe",
-       "The light probe. Without a file, the model's own environment or lights light the scene."},
-      {"lighting", "[lighting]", "Lighting", "How the scene's light is sampled."},
+       "The light probe. Without a file, the model's own environment or lights light the scene.",
+       probeRows, true},
+      {"lighting", "[lighting]", "Lighting", "How the scene's light is sampled.", lightingRows,
+       true},
       {"light", "[[light]]", "Lamps",
        "One table for each lamp. A point light has `intensity` or `power`, and perhaps a `range`; "
        "a spot also `direction`, `inner_angle` and `outer_angle`; a disc has `direction`, "
-       "`radius`, "
-       "and `radiance` or `power`, and is a surface like others: a polygon of 128 sides with its "
-       "exact area that shines to one side."},
+       "`radius`, and `radiance` or `power`, and is a surface like others: a polygon of 128 sides "
+       "with its exact area that shines to one side.",
+       lightRows},
       {"source", "[[source]]", "Sources",
        "Windows and lamps in the probe that become light sources of their own: one table for each, "
-       "or for a file of them. With [surroundings] they are on its walls."},
+       "or for a file of them. With [surroundings] they are on its walls.",
+       sourceRows},
       {"render", "[render]", "Render",
        "The image, and how long to render it. `time` and `noise` end the samples early; if one of "
        "them is given, `samples` is a maximum. On the command line, any of the three replaces all "
-       "three of the file."},
+       "three of the file.",
+       renderRows, true},
       {"output", "[output]", "Output",
        "The files to write. The folder of a file is created if it is missing and its parent "
-       "exists."},
+       "exists.",
+       outputRows, true},
       {"composite", "[composite]", "Composite",
        "Differential rendering: composites the model's nodes into a photograph, except those of "
        "the local scene, which model real surfaces in the photograph. With `ground = true` the "
-       "model needs none: objects stand on a plane that takes their shadows."},
+       "model needs none: objects stand on a plane that takes their shadows.",
+       compositeRows},
       {"surroundings", "[surroundings]", "Surroundings",
-       "The surface at a finite distance that the probe is mapped onto, as seen from `capture`."},
-      {"", "The command line only", "Run", "These settings are options without a key."},
+       "The surface at a finite distance that the probe is mapped onto, as seen from `capture`.",
+       surroundingsRows},
+      {"", "The command line only", "Run", "These settings are options without a key.",
+       commandRows},
   };
   return sections;
+}
+
+Setting numberRow(std::string_view key, const Range& range, std::string_view unit,
+                  std::string_view absent, std::string_view help) {
+  return {.key = key,
+          .type = SettingType::Compound,
+          .form = "a number",
+          .range = range,
+          .unit = unit,
+          .absent = absent,
+          .help = help};
+}
+
+Setting pointRow(std::string_view key, std::string_view absent, std::string_view help) {
+  return {.key = key,
+          .type = SettingType::Compound,
+          .form = "three numbers",
+          .unit = "metres",
+          .absent = absent,
+          .help = help};
+}
+
+void addRenderOnly(std::vector<Setting>& rows, Effect effect, std::vector<Setting> more) {
+  for (Setting& row : more) {
+    row.effect = effect;
+    row.renderOnly = true;
+    rows.push_back(std::move(row));
+  }
 }
 
 std::vector<std::string_view> keysOf(std::string_view section) {
@@ -107,6 +166,11 @@ std::optional<SettingValue> Settings::value(std::string_view name) const {
   const Setting& setting = settingNamed(name);
   const bool hasDefault = setting.type == SettingType::Flag || !setting.fallback.empty();
   return hasDefault ? std::optional(defaultOf(name)) : std::nullopt;
+}
+
+int Settings::indexOfChoice(std::string_view name) const {
+  const auto& choices = settingNamed(name).choices;
+  return int(std::ranges::find(choices, get<std::string>(name)) - choices.begin());
 }
 
 std::string Settings::location(std::string_view name) const {

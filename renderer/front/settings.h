@@ -26,6 +26,9 @@ struct SettingSection {
   std::string_view heading;  // "[render]"
   std::string_view title;    // of its options in --help
   std::string_view about;    // one paragraph (Markdown)
+  std::vector<Setting> (*rows)();
+  // Its keys are options too: flags, and settings that have an `argument`.
+  bool keysAreOptions = false;
 };
 std::span<const SettingSection> settingSections();
 
@@ -40,12 +43,25 @@ const Setting* findSetting(std::string_view section, std::string_view key);
 
 // The parts of the table of settings.
 
-std::vector<Setting> sceneRows();      // [[model]], [camera], [probe], [lighting]
-std::vector<Setting> lightRows();      // [[light]]
-std::vector<Setting> sourceRows();     // [[source]]
-std::vector<Setting> renderRows();     // [render], [output]
-std::vector<Setting> compositeRows();  // [composite], [surroundings]
-std::vector<Setting> commandRows();    // options without a key
+std::vector<Setting> modelRows();
+std::vector<Setting> cameraRows();
+std::vector<Setting> probeRows();
+std::vector<Setting> lightingRows();
+std::vector<Setting> lightRows();
+std::vector<Setting> sourceRows();
+std::vector<Setting> renderRows();
+std::vector<Setting> outputRows();
+std::vector<Setting> compositeRows();
+std::vector<Setting> surroundingsRows();
+std::vector<Setting> commandRows();  // options without a key
+
+// A row of one number, and one of a position in metres: they have readers of their own.
+Setting numberRow(std::string_view key, const Range& range, std::string_view unit,
+                  std::string_view absent, std::string_view help);
+Setting pointRow(std::string_view key, std::string_view absent, std::string_view help);
+
+// Adds rows with this effect to those of a section, as options of `chromeball render` alone.
+void addRenderOnly(std::vector<Setting>& rows, Effect effect, std::vector<Setting> more);
 
 inline constexpr Range kPositive{.min = 0, .excludesMin = true};
 inline constexpr Range kNotNegative{.min = 0};
@@ -79,6 +95,11 @@ class Settings {
     const Given* given = find(name);
     return as<T>(name, given ? given->value : defaultOf(name));
   }
+  // The enumerator (or false, true) of a Choice, whose row has the choices in the same order.
+  template <class Enumerator>
+  Enumerator choice(std::string_view name) const {
+    return Enumerator(indexOfChoice(name));
+  }
   // The value given, else the default, else nothing.
   std::optional<SettingValue> value(std::string_view name) const;
   template <class T>
@@ -94,6 +115,7 @@ class Settings {
     throw std::logic_error("setting " + std::string(name) + " has another type");
   }
   static SettingValue defaultOf(std::string_view name);
+  int indexOfChoice(std::string_view name) const;
 
   std::map<std::string, Given, std::less<>> given_;
 };

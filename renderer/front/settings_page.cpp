@@ -48,37 +48,8 @@ file is an error that names the line, and suggests the nearest known key.
 `chromeball reference` prints this page, from the program's own table of settings.
 )";
 
-std::string typeText(const Setting& s) {
-  switch (s.type) {
-    case SettingType::Flag:
-      return "flag";
-    case SettingType::Integer:
-      return "integer";
-    case SettingType::Number:
-      return "number";
-    case SettingType::Factor:
-      return "number or `\"off\"`";
-    case SettingType::Choice:
-      return "name";
-    case SettingType::Choices:
-      return "name, or an array";
-    case SettingType::Name:
-      return "string";
-    case SettingType::File:
-      return "file";
-    case SettingType::Files:
-      return "file, or an array";
-    case SettingType::Size:
-      return "`[width, height]`";
-    case SettingType::Numbers:
-    case SettingType::Compound:
-      break;
-  }
-  return std::string(s.form);
-}
-
 std::string rangeText(const Setting& s) {
-  if (s.choices) return fmt::format("`{}`", fmt::join(s.choices(), "`, `"));
+  if (!s.choices.empty()) return fmt::format("`{}`", fmt::join(s.choices, "`, `"));
   const Range& r = s.range;
   const bool hasMin = std::isfinite(r.min), hasMax = std::isfinite(r.max);
   if (hasMin && hasMax)
@@ -98,11 +69,12 @@ std::string optionText(const Setting& s) {
 }
 
 std::string row(const Setting& s, bool hasKey) {
+  const std::string_view form = infoOf(s.type).form;
   std::string cells;
   if (hasKey) cells = fmt::format("| `{}` ", s.key);
   const std::string option = hasKey ? "" : fmt::format("| {} ", optionText(s));
-  cells += fmt::format("{}| {} | {} | {} | {} |", option, typeText(s), rangeText(s), s.unit,
-                       defaultText(s));
+  cells += fmt::format("{}| {} | {} | {} | {} |", option, form.empty() ? s.form : form,
+                       rangeText(s), s.unit, defaultText(s));
   if (hasKey) cells += fmt::format(" {} |", optionText(s));
   return fmt::format("{} {} |\n", cells, s.help);
 }

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "base/text.h"
 #include "front/toml_section.h"
 #include "image/io/output_file.h"
 
@@ -15,74 +14,51 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMaxTiles = 1000;
 
-class TileReader {
- public:
-  explicit TileReader(const std::string& path) : path_(path), table_(parseToml(path)) {}
+// Nullopt if there is no such key.
+std::optional<double> degreesIn(const Section& table, std::string_view key, double least,
+                                double most) {
+  const Entry entry = table[key];
+  if (!entry) return std::nullopt;
+  const auto number = entry.node->is_number() ? entry.node->value<double>() : std::nullopt;
+  if (!number || !(*number >= least && *number <= most))
+    failAt(entry.location(), "`{}` must be a number of degrees from {:g} to {:g}", key, least,
+           most);
+  return number;
+}
 
-  std::vector<TileEntry> tiles() const {
-    check(table_, {"fov", "tile"});
-    const toml::array* list = table_["tile"].as_array();
-    if (!list || list->empty()) throwInput("{}: has no [[tile]]", path_);
-    if (list->size() > kMaxTiles)
-      throwInput("{}: has {} tiles; at most {} are stitched", path_, list->size(), kMaxTiles);
-    std::vector<TileEntry> tiles;
-    for (const toml::node& node : *list) {
-      if (!node.is_table()) failAt(at(node), "`tile` must be a table, [[tile]]");
-      tiles.push_back(tile(*node.as_table()));
-    }
-    return tiles;
-  }
+std::optional<double> fovIn(const Section& table) { return degreesIn(table, "fov", 0.01, 179); }
 
- private:
-  std::string at(const toml::node& node) const {
-    return fmt::format("{}:{}", path_, node.source().begin.line);
-  }
-
-  void check(const toml::table& table, const std::vector<std::string_view>& keys) const {
-    for (const auto& [key, node] : table)
-      if (std::ranges::count(keys, key.str()) == 0)
-        failAt(fmt::format("{}:{}", path_, key.source().begin.line), "unknown key `{}`; {}",
-               printableName(key.str()), didYouMean(key.str(), keys));
-  }
-
-  // Nullopt if there is no such key.
-  std::optional<double> number(const toml::table& table, std::string_view key, double least,
-                               double most) const {
-    const toml::node* node = table.get(key);
-    if (!node) return std::nullopt;
-    const auto number = node->is_number() ? node->value<double>() : std::nullopt;
-    if (!number || !(*number >= least && *number <= most))
-      failAt(at(*node), "`{}` must be a number of degrees from {:g} to {:g}", key, least, most);
-    return number;
-  }
-  std::optional<double> fov(const toml::table& table) const {
-    return number(table, "fov", 0.01, 179);
-  }
-
-  TileEntry tile(const toml::table& table) const {
-    check(table, {"file", "yaw", "pitch", "roll", "fov"});
-    const Entry file{path_, "file", table.get("file")};
-    if (!file) failAt(at(table), "[[tile]] needs `file`, the name of an image");
-    constexpr double kMost = 3600;
-    const auto angle = [&](const char* key) {
-      return number(table, key, -kMost, kMost).value_or(0);
-    };
-    const std::optional<double> own = fov(table), common = fov(table_);
-    if (!own && !common)
-      failAt(at(table), "[[tile]] needs `fov`, vertical, or the list one for all");
-    return {existingFile(file, "the list"),
-            {angle("yaw"), angle("pitch"), angle("roll")},
-            own ? *own : *common,
-            at(table)};
-  }
-
-  const std::string& path_;
-  toml::table table_;
-};
+TileEntry readTile(const Entry& entry, const Section& list) {
+  if (!entry.node->is_table()) failAt(entry.location(), "`tile` must be a table, [[tile]]");
+  const Section tile(entry.file, *entry.node->as_table(), {"file", "yaw", "pitch", "roll", "fov"});
+  const Entry file = tile["file"];
+  if (!file) failAt(tile.location(), "[[tile]] needs `file`, the name of an image");
+  constexpr double kMost = 3600;
+  const auto angle = [&](const char* key) {
+    return degreesIn(tile, key, -kMost, kMost).value_or(0);
+  };
+  const std::optional<double> own = fovIn(tile), common = fovIn(list);
+  if (!own && !common)
+    failAt(tile.location(), "[[tile]] needs `fov`, vertical, or the list one for all");
+  return {existingFile(file, "the list"),
+          {angle("yaw"), angle("pitch"), angle("roll")},
+          own ? *own : *common,
+          tile.location()};
+}
 
 }  // namespace
 
-std::vector<TileEntry> readTiles(const std::string& path) { return TileReader(path).tiles(); }
+std::vector<TileEntry> readTiles(const std::string& path) {
+  const toml::table table = parseToml(path);
+  const Section list(path, table, {"fov", "tile"});
+  const toml::array* entries = table["tile"].as_array();
+  if (!entries || entries->empty()) throwInput("{}: has no [[tile]]", path);
+  if (entries->size() > kMaxTiles)
+    throwInput("{}: has {} tiles; at most {} are stitched", path, entries->size(), kMaxTiles);
+  std::vector<TileEntry> tiles;
+  forEach(list["tile"], [&](const Entry& entry) { tiles.push_back(readTile(entry, list)); });
+  return tiles;
+}
 
 void writeTiles(const std::string& path, const std::vector<TileEntry>& tiles) {
   const fs::path folder = fs::absolute(path).parent_path();

@@ -24,14 +24,6 @@ std::string describe(const toml::node& node) {
   return "a date or time";
 }
 
-// Describes valid numbers of the setting.
-std::string expectedNumber(Setting setting, const Range& range) {
-  if (setting.type == SettingType::Compound || setting.type == SettingType::Numbers)
-    setting.type = SettingType::Number;
-  setting.range = range;
-  return expected(setting);
-}
-
 }  // namespace
 
 void Entry::mustBe(std::string_view what) const {
@@ -87,6 +79,8 @@ std::vector<double> Entry::numbers() const {
 }
 
 vec3 Entry::vector() const { return vec3(point()); }
+
+vec3 Entry::oneOrThree() const { return isArray() ? vector() : vec3(float(number())); }
 
 glm::dvec3 Entry::point() const {
   if (!isArrayOf(3)) mustBe("three numbers");
@@ -153,7 +147,7 @@ Entry Section::required(std::string_view key) const {
   const Entry entry = (*this)[key];
   if (!entry)
     failAt(location(), "{} has no `{}`{}", heading(), key,
-           entry.setting->choices ? ": " + expected(*entry.setting) : "");
+           entry.setting->choices.empty() ? "" : ": " + expected(*entry.setting));
   return entry;
 }
 
@@ -201,21 +195,6 @@ std::string existingFile(const Entry& entry, std::string_view relativeTo) {
   return path;
 }
 
-toml::table parseToml(const std::string& path) {
-  checkReadable(path);
-  if (const auto bytes = std::filesystem::file_size(path); bytes > kMaxFileBytes)
-    throwInput("{}: {} bytes; a scene file has at most {}", path, bytes, kMaxFileBytes);
-  const std::vector<uint8_t> bytes = readFile(path);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  checkKeyDepth(text, path);
-  try {
-    return toml::parse(text, path);
-  } catch (const toml::parse_error& error) {
-    failAt(fmt::format("{}:{}", path, error.source().begin.line), "not valid TOML: {}",
-           error.description());
-  }
-}
-
 namespace {
 
 // The position after the string or comment that begins at `begin`.
@@ -233,8 +212,10 @@ size_t endOfToken(std::string_view toml, size_t begin) {
   return toml.size();
 }
 
-}  // namespace
-
+// Bounds the nesting of dotted keys before TOML is parsed: toml++ bounds the nesting of values
+// only, and walks the tables that keys make recursively. Throws InputError for a key of more than
+// 16 parts (`a.b.c` has 3), as a header or anywhere else. Text that is not valid TOML passes, or
+// fails with a line.
 void checkKeyDepth(std::string_view toml, const std::string& path) {
   constexpr size_t kMostParts = 16;
   size_t dots = 0;
@@ -250,6 +231,23 @@ void checkKeyDepth(std::string_view toml, const std::string& path) {
       throwInput("{}:{}: a key has more than {} parts", path,
                  1 + std::count(toml.begin(), toml.begin() + ptrdiff_t(at), '\n'), kMostParts);
     ++at;
+  }
+}
+
+}  // namespace
+
+toml::table parseToml(const std::string& path) {
+  checkReadable(path);
+  if (const auto bytes = std::filesystem::file_size(path); bytes > kMaxFileBytes)
+    throwInput("{}: {} bytes; a scene file has at most {}", path, bytes, kMaxFileBytes);
+  const std::vector<uint8_t> bytes = readFile(path);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  checkKeyDepth(text, path);
+  try {
+    return toml::parse(text, path);
+  } catch (const toml::parse_error& error) {
+    failAt(fmt::format("{}:{}", path, error.source().begin.line), "not valid TOML: {}",
+           error.description());
   }
 }
 

@@ -52,6 +52,7 @@ struct Entry {
   double number(const Range& narrower) const;
   std::vector<double> numbers() const;  // one such number, or an array of as many as allowed
   vec3 vector() const;                  // three such numbers
+  vec3 oneOrThree() const;              // one for all of them, or three
   glm::dvec3 point() const;             // likewise, not rounded: a position in the world, metres
 
   // The value of a setting that is not a Compound.
@@ -109,12 +110,5 @@ std::string existingFile(const Entry& entry, std::string_view relativeTo = "the 
 
 // Throws InputError for a file that is not valid TOML.
 toml::table parseToml(const std::string& path);
-
-// Bounds the nesting of dotted keys before TOML is parsed: toml++ bounds the nesting of values
-// only, and walks the tables that keys make recursively.
-
-// Throws InputError, begun by `path` and the line, for a key of more than 16 parts (`a.b.c` has 3),
-// as a header or anywhere else. Text that is not valid TOML passes, or fails with a line.
-void checkKeyDepth(std::string_view toml, const std::string& path);
 
 }  // namespace chromeball

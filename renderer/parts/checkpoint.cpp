@@ -37,14 +37,6 @@ void RenderPart::archive(Archive& a) {
           w.width > 0 && w.height > 0 && w.width <= s.width - w.x && w.height <= s.height - w.y);
 }
 
-std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result) {
-  return [&](Archive& a) {
-    part.archive(a);
-    part.plan.archiveImages(a);
-    result.archive(a);
-  };
-}
-
 RenderPart readPartHeader(const std::filesystem::path& path) {
   RenderPart part;
   readExrState(path, [&](Archive& a) { part.archive(a); });
@@ -76,12 +68,8 @@ CheckpointControl::CheckpointControl(const LoadedScene& loaded,
 
 bool CheckpointControl::restore(RenderState& state) {
   if (!path_ || !std::filesystem::exists(*path_)) return false;
-  readExrState(*path_, [&](Archive& a) {
-    RenderPart part;  // has been compared
-    part.archive(a);
-    part.plan.archiveImages(a);
-    state.archive(a);
-  });
+  RenderPart part;  // has been compared
+  readExrState(*path_, partState(part, state));
   noteSamples(state);
   return true;
 }
@@ -91,10 +79,9 @@ void CheckpointControl::noteSamples(const RenderState& restored) {
   const uint32_t samples = std::max(restored.done, pass),
                  asked = loaded_.description.settings.samples;
   if (samples > asked)
-    messages_.push_back({Message::Kind::Note,
-                         fmt::format("{} has {} samples per pixel, more than the {} asked for; the "
-                                     "image keeps them",
-                                     *path_, samples, asked)});
+    addNote(messages_,
+            "{} has {} samples per pixel, more than the {} asked for; the image keeps them", *path_,
+            samples, asked);
 }
 
 void CheckpointControl::endPass(const RenderState& state) {
@@ -168,11 +155,7 @@ FinishedImage CheckpointControl::imageOf(const RenderState& state) const {
 void CheckpointControl::writeCheckpoint(RenderState& state) {
   OutputImage image = imageOf(state).image;
   part_.plan = finishPlan(loaded_, state.result);
-  image.state = [&](Archive& a) {
-    part_.archive(a);
-    part_.plan.archiveImages(a);
-    state.archive(a);
-  };
+  image.state = partState(part_, state);
   writeExr(*path_, image);
   checkpoints_.restart();
 }

@@ -32,8 +32,16 @@ struct RenderPart {
   void archive(Archive& a);
 };
 
-// The function for OutputImage::state. `part` and `result` must outlive the writing.
-std::function<void(Archive&)> partState(RenderPart& part, RenderResult& result);
+// The function for OutputImage::state. `part` and `state`, a RenderResult or RenderState, must
+// outlive it.
+template <class State>
+std::function<void(Archive&)> partState(RenderPart& part, State& state) {
+  return [&](Archive& a) {
+    part.archive(a);
+    part.plan.archiveImages(a);
+    state.archive(a);
+  };
+}
 
 // Reads a part without its images. Throws InputError.
 RenderPart readPartHeader(const std::filesystem::path& path);

@@ -64,15 +64,12 @@ RenderResult render(const World& world, const Camera& camera, const LightSource&
     if (result.overrun > 0) result.overrun += filling;
     return result;
   }
-  if (settings.wantsGroups()) {
-    const LightGroups groups(world, lighting);
-    GuideTraining training(world, lighting, settings);
-    const PathTracer tracer(world, lighting, training.guided(settings.path()));
-    return withLayers(GroupIntegrator(tracer, groups), &training, settings, progress);
-  }
   GuideTraining training(world, lighting, settings);
-  return withLayers(PathIntegrator(PathTracer(world, lighting, training.guided(settings.path()))),
-                    &training, settings, progress);
+  const PathTracer tracer(world, lighting, training.guided(settings.path()));
+  if (!settings.wantsGroups())
+    return withLayers(PathIntegrator(tracer), &training, settings, progress);
+  const LightGroups groups(world, lighting);
+  return withLayers(GroupIntegrator(tracer, groups), &training, settings, progress);
 }
 
 }  // namespace chromeball

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "session/develop_image.h"
 
-#include <fmt/format.h>
-
 #include "base/file.h"
 
 namespace chromeball {
@@ -14,19 +12,17 @@ const Image* findDepth(const OutputImage& image) {
   return nullptr;
 }
 
-Message warning(std::string text) { return {Message::Kind::Warning, std::move(text)}; }
-
 // A finished render is written even if its camera does not allow the steps of developing.
 DevelopSettings possible(DevelopSettings settings, const ViewFrame& frame, const Image* depth,
                          Messages& messages) {
   if (settings.needsFov() && !(frame.fov > 0)) {
-    messages.push_back(
-        warning("develop: vignette, glare and depth-blur are left out: the camera has no field of "
-                "view"));
+    addWarning(messages,
+               "develop: vignette, glare and depth-blur are left out: the camera has no field of "
+               "view");
     settings.lens.reset(), settings.glare = false, settings.vignette = 0;
   }
   if (settings.lens && !depth) {
-    messages.push_back(warning("develop: depth-blur is left out: the image has no layer `depth`"));
+    addWarning(messages, "develop: depth-blur is left out: the image has no layer `depth`");
     settings.lens.reset();
   }
   return settings;
@@ -39,8 +35,8 @@ OutputImage developed(const RenderDescription& description, const OutputImage& i
   const Image* depth = findDepth(image);
   const ViewFrame frame = viewFrame(color.image, image.placement, image.metadata);
   const DevelopSettings settings = possible(description.output.develop, frame, depth, messages);
-  for (Message& message : inWords(develop(result.layers.front().image, settings, depth, frame)))
-    messages.push_back(std::move(message));
+  const Messages found = inWords(develop(result.layers.front().image, settings, depth, frame));
+  messages.insert(messages.end(), found.begin(), found.end());
   return result;
 }
 
@@ -58,14 +54,11 @@ ViewFrame viewFrame(const Image& image, const std::optional<Placement>& placemen
 Messages inWords(const DevelopReport& report) {
   Messages messages;
   if (report.invalid > 0)
-    messages.push_back(
-        warning(fmt::format("develop: {} pixel{} NaN or infinite; as 0, they do not spread",
-                            report.invalid, report.invalid == 1 ? " is" : "s are")));
+    addWarning(messages, "develop: {} pixel{} NaN or infinite; as 0, they do not spread",
+               report.invalid, report.invalid == 1 ? " is" : "s are");
   if (report.limited > 0)
-    messages.push_back(
-        warning(fmt::format("develop: the depth blur of {} pixels is limited to a radius of {} "
-                            "pixels",
-                            report.limited, kMaxConfusionRadius)));
+    addWarning(messages, "develop: the depth blur of {} pixels is limited to a radius of {} pixels",
+               report.limited, kMaxConfusionRadius);
   return messages;
 }
 

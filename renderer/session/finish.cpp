@@ -165,15 +165,6 @@ void archiveOptional(Archive& a, std::optional<T>& value) {
   if (has && !value) value.emplace();
 }
 
-void archiveNames(Archive& a, std::vector<std::string>& names) {
-  uint64_t count = names.size();
-  a(count);
-  for (uint64_t i = 0; i < count; ++i) {
-    if (a.reads()) names.emplace_back();
-    a(names[i]);
-  }
-}
-
 // The pixels follow in archivePixels().
 void archiveChannels(Archive& a, Image& image) {
   uint32_t channels = image.empty() ? 0 : uint32_t(image.channels);
@@ -213,13 +204,13 @@ void FinishPlan::archive(Archive& a) {
     s.aovs.push_back(Aov(aov));
   }
   a(s.lightGroups), a(s.shadowMattes);
-  archiveNames(a, groups);
+  a(groups);
   archiveOptional(a, composite);
   a.check(groups.empty() || !composite);
   a.check(composite || !s.hideProbe || std::ranges::count(s.aovs, Aov::Alpha) > 0);
   if (!composite) return;
   a.enumerator(composite->mode, CompositeMode::ShadowCatcher);
-  archiveNames(a, composite->layers);
+  a(composite->layers);
   archiveChannels(a, composite->plate);
   archiveChannels(a, composite->reflectance);
   a.check(composite->plate.channels == (composite->isShadowCatcher() ? 0 : 3) &&

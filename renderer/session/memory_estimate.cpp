@@ -39,6 +39,37 @@ double bytesOfFiles(const Scene& scene) {
   return bytes;
 }
 
+// Bytes for a pixel.
+struct PixelMemory {
+  double film = double(Film::bytesPerPixel());  // all sums of samples
+  double texels = 4 * sizeof(float);            // of the output: the colour and the layers
+};
+
+PixelMemory pixelMemory(const RenderSettings& settings) {
+  PixelMemory m;
+  if (!settings.aovs.empty()) m.film += 2 * sizeof(uint32_t);
+  if (settings.wantsFeatures()) m.film += double(FeatureFilm::bytesPerPixel());
+  for (Aov aov : settings.aovs) {
+    const double channels = aov == Aov::Denoise
+                                ? FeatureFilm::kLayerChannels
+                                : std::max<double>(1, double(std::strlen(aovInfo(aov).channels)));
+    if (aov != Aov::Denoise) m.film += channels * sizeof(double);  // made of the features
+    m.texels += channels * sizeof(float);
+  }
+  return m;
+}
+
+double pixelsOf(const RenderSettings& settings) {
+  return double(settings.window().width) * settings.window().height;
+}
+
+// The additional memory for snapshots of a session (live_image.h): three images; for a composite, a
+// copy of the film and two images.
+double snapshotBytes(const RenderSettings& settings, bool isComposite) {
+  const PixelMemory pixel = pixelMemory(settings);
+  return pixelsOf(settings) * ((isComposite ? pixel.film : pixel.texels) + 2 * pixel.texels);
+}
+
 }  // namespace
 
 double imageBytes(const RenderDescription& description) {
@@ -88,43 +119,10 @@ std::string inWords(const MemoryEstimate& e) {
 }
 
 void checkMemory(const LoadedScene& loaded) {
-  const RenderDescription& description = loaded.description;
   const MemoryEstimate estimate = estimateMemory(loaded);
-  const double limit = memoryLimit(description);
-  if (estimate.peak > limit)
-    throw InputError(
-        fmt::format("{}: takes {:.3g} GB of memory ({}); the limit is {:.3g} GB", description.path,
-                    1e-9 * estimate.peak, inWords(estimate), 1e-9 * limit),
-        Remedy{"memory", {}});
+  checkMemory(loaded.description, estimate.peak, "{}: takes {:.3g} GB of memory ({})",
+              loaded.description.path, 1e-9 * estimate.peak, inWords(estimate));
 }
-
-namespace {
-
-// Bytes for a pixel.
-struct PixelMemory {
-  double film = double(Film::bytesPerPixel());  // all sums of samples
-  double texels = 4 * sizeof(float);            // of the output: the colour and the layers
-};
-
-PixelMemory pixelMemory(const RenderSettings& settings) {
-  PixelMemory m;
-  if (!settings.aovs.empty()) m.film += 2 * sizeof(uint32_t);
-  if (settings.wantsFeatures()) m.film += double(FeatureFilm::bytesPerPixel());
-  for (Aov aov : settings.aovs) {
-    const double channels = aov == Aov::Denoise
-                                ? FeatureFilm::kLayerChannels
-                                : std::max<double>(1, double(std::strlen(aovInfo(aov).channels)));
-    if (aov != Aov::Denoise) m.film += channels * sizeof(double);  // made of the features
-    m.texels += channels * sizeof(float);
-  }
-  return m;
-}
-
-double pixelsOf(const RenderSettings& settings) {
-  return double(settings.window().width) * settings.window().height;
-}
-
-}  // namespace
 
 double imageBytes(const RenderSettings& settings) {
   const PixelMemory pixel = pixelMemory(settings);
@@ -136,11 +134,6 @@ double imageBytes(const RenderSettings& settings) {
   const double denoising =
       settings.denoise ? denoiseBytes(window.width, window.height, kMaxParts) : 0;
   return pixelsOf(settings) * (pixel.film + std::max(kNoise, 2 * pixel.texels)) + denoising;
-}
-
-double snapshotBytes(const RenderSettings& settings, bool isComposite) {
-  const PixelMemory pixel = pixelMemory(settings);
-  return pixelsOf(settings) * ((isComposite ? pixel.film : pixel.texels) + 2 * pixel.texels);
 }
 
 }  // namespace chromeball

@@ -3,6 +3,7 @@
 // tables of the probe and the images are allocated.
 #pragma once
 
+#include "base/error.h"
 #include "base/memory.h"
 #include "render/render.h"
 #include "session/load_scene.h"
@@ -24,6 +25,18 @@ MemoryEstimate estimateMemory(const LoadedScene& loaded);
 // The description's limit: `--memory`, or memoryBudget().
 double memoryLimit(const RenderDescription& description);
 
+// Throws InputError "WHAT; the limit is X GB" if so many bytes exceed the limit; `format` says
+// what.
+template <class... Args>
+void checkMemory(const RenderDescription& description, double bytes,
+                 fmt::format_string<Args...> format, Args&&... args) {
+  const double limit = memoryLimit(description);
+  if (bytes > limit)
+    throw InputError(fmt::format("{}; the limit is {:.3g} GB",
+                                 fmt::format(format, std::forward<Args>(args)...), 1e-9 * limit),
+                     Remedy{"memory", {}});
+}
+
 // The film, layers, output images and snapshots of a description of known size.
 double imageBytes(const RenderDescription& description);
 
@@ -40,9 +53,5 @@ inline constexpr double kProcessBytes = 3e7;
 
 // Peak memory of the film, the layers and the output images, in bytes.
 double imageBytes(const RenderSettings& settings);
-
-// The additional memory for snapshots of a session (live_image.h): three images; for a composite, a
-// copy of the film and two images.
-double snapshotBytes(const RenderSettings& settings, bool isComposite);
 
 }  // namespace chromeball

@@ -43,12 +43,9 @@ void checkMotionMemory(const RenderDescription& description, const Scene& scene)
     if (instance.moves)
       moving += double(scene.meshes[size_t(instance.mesh)].positions.size()) * kMovingVertex;
   const double needed = moving * description.camera.shutter->steps;
-  if (needed > memoryLimit(description))
-    throw InputError(
-        fmt::format("{}: {} steps of what moves take {:.3g} GB of memory; the limit is {:.3g} GB",
-                    description.origins.of("camera.shutter"), description.camera.shutter->steps,
-                    1e-9 * needed, 1e-9 * memoryLimit(description)),
-        Remedy{"memory", {}});
+  checkMemory(description, needed, "{}: {} steps of what moves take {:.3g} GB of memory",
+              description.origins.of("camera.shutter"), description.camera.shutter->steps,
+              1e-9 * needed);
 }
 
 // Fractions of the shutter's time at which animations have moved, between which and the keys they

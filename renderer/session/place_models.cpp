@@ -65,17 +65,7 @@ Camera withOptics(const RenderDescription& description, Camera camera) {
   return camera;
 }
 
-}  // namespace
-
-AutomaticView AutomaticView::seenFrom(const glm::dvec3& other) const {
-  AutomaticView view = *this;
-  const vec3 move(origin - other);
-  view.origin = other;
-  view.centre += move;
-  if (view.camera) view.camera->position += move;
-  return view;
-}
-
+// The description's size must be final.
 AutomaticView automaticView(const RenderDescription& description, const Scene& scene,
                             const glm::dvec3& origin) {
   const RenderSettings& s = description.settings;
@@ -89,13 +79,12 @@ AutomaticView automaticView(const RenderDescription& description, const Scene& s
   return view;
 }
 
+// The camera before its `orbit`.
 Camera chooseCamera(const RenderDescription& description, const Scene& scene,
                     const AutomaticView& view) {
   return withOptics(description,
                     withLens(description, chooseWithoutLens(description, scene, view)));
 }
-
-namespace {
 
 // Throws InputError if the scene reaches too far from the origin.
 void checkReach(const Bounds& box, const std::string& name) {
@@ -132,15 +121,11 @@ void chooseSize(RenderDescription& description, const Scene& scene) {
     if (crop->x + crop->width > settings.width || crop->y + crop->height > settings.height)
       throwInput("{}: is not within the image of {}x{} pixels", description.origins.of("crop"),
                  settings.width, settings.height);
-  const double needed = imageBytes(description), budget = memoryLimit(description);
-  if (needed > budget)
-    throw InputError(
-        fmt::format("{}an image of {}x{} takes {:.3g} GB of memory; the limit is {:.3g} GB",
-                    description.origins.has("render.size")
-                        ? description.origins.of("render.size") + ": "
-                        : "",
-                    settings.width, settings.height, needed * 1e-9, budget * 1e-9),
-        Remedy{"memory", {}});
+  const double needed = imageBytes(description);
+  const Origins& origins = description.origins;
+  checkMemory(description, needed, "{}an image of {}x{} takes {:.3g} GB of memory",
+              origins.has("render.size") ? origins.of("render.size") + ": " : "", settings.width,
+              settings.height, 1e-9 * needed);
 }
 
 PlacedModels modelsAtOrigin(const RenderDescription& description,
@@ -169,6 +154,15 @@ AutomaticView viewAtStart(const RenderDescription& description, const PlacedMode
 }
 
 }  // namespace
+
+AutomaticView AutomaticView::seenFrom(const glm::dvec3& other) const {
+  AutomaticView view = *this;
+  const vec3 move(origin - other);
+  view.origin = other;
+  view.centre += move;
+  if (view.camera) view.camera->position += move;
+  return view;
+}
 
 Scene loadModels(const RenderDescription& description, const std::vector<ModelEntry>& models,
                  const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings) {

@@ -11,10 +11,6 @@
 
 namespace chromeball {
 
-// The camera of a description: the scene file's, the model's, or one that frames the model.
-
-struct RenderDescription;
-
 // The parts of a view that depend on the models' bounds, at time 0 of an animation, so that they
 // are the same at all times.
 struct AutomaticView {
@@ -24,15 +20,6 @@ struct AutomaticView {
 
   AutomaticView seenFrom(const glm::dvec3& other) const;  // with another origin
 };
-
-// The description's size must be final.
-AutomaticView automaticView(const RenderDescription& description, const Scene& scene,
-                            const glm::dvec3& origin);
-
-// The camera before its `orbit`. Throws InputError for a camera that the model does not have, or a
-// lens for an orthographic one.
-Camera chooseCamera(const RenderDescription& description, const Scene& scene,
-                    const AutomaticView& view);
 
 struct ModelCache;
 

@@ -46,13 +46,9 @@ void checkGroupMemory(const LoadedScene& loaded, const World& world, const Light
   const double layers = double(LayerFilm::bytesPerPixel(count, false) + 2 * count * sizeof(Rgb)) *
                         window.width * window.height;
   const double needed = estimateMemory(loaded).peak + layers;
-  if (needed > memoryLimit(description))
-    throw InputError(
-        fmt::format("{}: {} light groups take {:.3g} GB of memory, with all else {:.3g} GB; the "
-                    "limit is {:.3g} GB",
-                    description.origins.of("output.aovs"), count, 1e-9 * layers, 1e-9 * needed,
-                    1e-9 * memoryLimit(description)),
-        Remedy{"memory", {}});
+  checkMemory(description, needed,
+              "{}: {} light groups take {:.3g} GB of memory, with all else {:.3g} GB",
+              description.origins.of("output.aovs"), count, 1e-9 * layers, 1e-9 * needed);
 }
 
 }  // namespace
@@ -107,12 +103,10 @@ FinishedRender renderLoaded(const LoadedScene& loaded, const PreparedScene& prep
   result.render.interrupted |= description.settings.denoisesAtEnd() && !result.denoised;
   result.seconds = watch.lap();
   if (result.render.overrun > 0)
-    result.messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format(
-             "{}: the first pass, which is always completed, took {:.2g} s, longer than {:g}",
-             description.origins.of("render.time"), result.render.overrun,
-             *description.settings.timeLimit)});
+    addWarning(result.messages,
+               "{}: the first pass, which is always completed, took {:.2g} s, longer than {:g}",
+               description.origins.of("render.time"), result.render.overrun,
+               *description.settings.timeLimit);
   return result;
 }
 

@@ -26,6 +26,37 @@ namespace {
 
 using nlohmann::json;
 
+// The rest of the first line of a file that begins with `key`, after `separator`.
+std::string lineIn(const char* path, const std::string& key, char separator) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(key)) {
+      const size_t begin = line.find_first_not_of(" \t\"", line.find(separator) + 1);
+      const size_t end = line.find_last_not_of(" \t\"") + 1;
+      return begin < end ? line.substr(begin, end - begin) : "";
+    }
+  return "";
+}
+
+std::string shellWord(const std::string& argument) {
+  const bool plain = !argument.empty() && argument.find_first_not_of(
+                                              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                              "0123456789-_=+,./:@%") == std::string::npos;
+  if (plain) return argument;
+  std::string result = "'";
+  for (const char c : argument) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+// Of this process, quoted for a shell.
+std::string commandLine() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::string command;
+  for (std::string argument; std::getline(file, argument, '\0');)
+    command += fmt::format("{}{}", command.empty() ? "" : " ", shellWord(argument));
+  return command;
+}
+
 // The memory stated before the render, and the peak since the process began.
 json describe(const MemoryEstimate& stated) {
   return {
@@ -164,8 +195,8 @@ Messages checkOutputs(const RenderDescription& description) {
   if (description.run.checkpoint) checkOutputFile(*description.run.checkpoint, {".exr"});
 
   const auto has = [&](std::string_view extension) {
-    return std::any_of(files.begin(), files.end(),
-                       [&](const auto& output) { return lowerExtension(output) == extension; });
+    return std::ranges::any_of(
+        files, [&](const auto& output) { return lowerExtension(output) == extension; });
   };
   if (description.settings.isPart() && description.origins.has("shard") && !has(".exr"))
     throwInput("{}: needs an .exr as output, which `chromeball merge` reads",
@@ -173,9 +204,7 @@ Messages checkOutputs(const RenderDescription& description) {
   Messages messages;
   const auto warn = [&](std::string_view setting, const std::string& why) {
     if (description.origins.has(setting))
-      messages.push_back(
-          {Message::Kind::Warning,
-           fmt::format("{} has no effect: {}", namedOrigin(description, setting), why)});
+      addWarning(messages, "{} has no effect: {}", namedOrigin(description, setting), why);
   };
   for (const char* name : {"tonemap", "exposure", "output.develop"})
     if (!has(".png")) warn(name, fmt::format("it is for .png; {} holds radiance", files.front()));
@@ -209,28 +238,6 @@ void prepareOutputs(const RenderDescription& description, std::vector<std::strin
 
 namespace {
 
-// The rest of the first line of a file that begins with `key`, after `separator`.
-std::string lineIn(const char* path, const std::string& key, char separator) {
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with(key)) {
-      const size_t begin = line.find_first_not_of(" \t\"", line.find(separator) + 1);
-      const size_t end = line.find_last_not_of(" \t\"") + 1;
-      return begin < end ? line.substr(begin, end - begin) : "";
-    }
-  return "";
-}
-
-std::string shellWord(const std::string& argument) {
-  const bool plain = !argument.empty() && argument.find_first_not_of(
-                                              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                              "0123456789-_=+,./:@%") == std::string::npos;
-  if (plain) return argument;
-  std::string result = "'";
-  for (const char c : argument) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
 #ifdef __clang__
 constexpr const char* kCompiler = "clang++ " __clang_version__;
 #else
@@ -242,14 +249,6 @@ constexpr const char* kCompiler = "g++ " __VERSION__;
 // (getrusage() would include what the process that started this one had.)
 uint64_t peakMemoryBytes() {
   return 1024 * std::strtoull(lineIn("/proc/self/status", "VmHWM", ':').c_str(), nullptr, 10);
-}
-
-std::string commandLine() {
-  std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  std::string command;
-  for (std::string argument; std::getline(file, argument, '\0');)
-    command += fmt::format("{}{}", command.empty() ? "" : " ", shellWord(argument));
-  return command;
 }
 
 Machine thisMachine() {

@@ -56,6 +56,4 @@ Machine thisMachine();
 
 uint64_t peakMemoryBytes();  // of this process so far; 0 if the system does not tell
 
-std::string commandLine();  // of this process, quoted for a shell
-
 }  // namespace chromeball

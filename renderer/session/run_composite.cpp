@@ -61,12 +61,10 @@ Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale) {
                      100 * r->clampedFraction, r->exposureRatio),
          Remedy{"probe.scale", scaledText(r->exposureRatio * scale)}});
   if (report.darkerThanBlack)
-    messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format(
-             "{} pixels would be negative, since the objects take more light than the plate "
-             "has there, and are black: plate and probe may differ in exposure",
-             report.darkerThanBlack)});
+    addWarning(messages,
+               "{} pixels would be negative, since the objects take more light than the plate "
+               "has there, and are black: plate and probe may differ in exposure",
+               report.darkerThanBlack);
   return messages;
 }
 
@@ -96,12 +94,11 @@ FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& p
   const auto& limit = description.settings.noiseLimit;
   if (limit && plan.passes == Passes::Two && !rendered.result.interrupted &&
       finished.noise.noise > *limit)
-    messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("the noise of the composite is {:.3g}%, above the limit of {:g}%, "
-                     "which holds for its first pass: it is relative to plate and "
-                     "light of the scene together; give a smaller --noise",
-                     100 * finished.noise.noise, 100 * *limit)});
+    addWarning(messages,
+               "the noise of the composite is {:.3g}%, above the limit of {:g}%, "
+               "which holds for its first pass: it is relative to plate and "
+               "light of the scene together; give a smaller --noise",
+               100 * finished.noise.noise, 100 * *limit);
   if (loaded.plateScale)  // nothing better is known
     for (Message& message : messages) message.remedy.reset();
   return {std::move(finished), std::move(rendered.result), std::move(messages)};
@@ -161,11 +158,9 @@ void placeGround(const RenderDescription& description, LoadedScene& loaded) {
   if (loaded.surroundings) ground = clipped(ground, *loaded.surroundings, location);
   const double depth = double(ground.height) - double(objects.min.y);
   if (depth > 1e-3 * glm::length(objects.size()))
-    loaded.messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{}: the model reaches {:.3g} m below the ground; move it, or give "
-                     "`ground_height`",
-                     location, depth)});
+    addWarning(loaded.messages,
+               "{}: the model reaches {:.3g} m below the ground; move it, or give `ground_height`",
+               location, depth);
   addGround(loaded.scene, ground, composite.entry.groundReflectance);
 }
 
@@ -188,11 +183,9 @@ void prepareLocalScene(LoadedScene& loaded) {
   }
   loaded.isObject = findObjects(scene, localScene, location);
   if (!localScene.empty() && std::ranges::count(loaded.isObject, false) == 0)
-    loaded.messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{}: local_scene: `{}` has no visible surface, so that no object changes "
-                     "its light",
-                     localScene.front().location, localScene.front().name)});
+    addWarning(loaded.messages,
+               "{}: local_scene: `{}` has no visible surface, so that no object changes its light",
+               localScene.front().location, localScene.front().name);
   if (composite.choosesReflectance && hasLamps(scene))
     composite.reflectance = CompositeDescription::Reflectance::Plate;
   if (composite.reflectance == CompositeDescription::Reflectance::Flat) {
@@ -201,8 +194,7 @@ void prepareLocalScene(LoadedScene& loaded) {
       throwInput("{}: the local scene is not flat; give \"plate\"", reflectance);
     if (isLayered(scene, loaded.isObject))
       throwInput(
-          "{}: needs matte surfaces, and there are coats, sheen or transmission; give "
-          "\"plate\"",
+          "{}: needs matte surfaces, and there are coats, sheen or transmission; give \"plate\"",
           reflectance);
     if (description.surroundings)
       throwInput("{}: needs a distant probe, and there are [surroundings]; give \"plate\"",

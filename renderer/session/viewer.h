@@ -2,6 +2,7 @@
 // A viewer of an image while it is rendered: a page in a browser, or another program.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -18,7 +19,15 @@ struct ImageSoFar {
 };
 
 // Includes the layers variance and samples, even if the description does not ask for them.
-ImageSoFar imageSoFar(FinishedImage finished, const RenderResult& render);
+inline ImageSoFar imageSoFar(FinishedImage finished, const RenderResult& render) {
+  std::vector<Layer>& layers = finished.image.layers;
+  const auto has = [&](const char* name) {
+    return std::ranges::any_of(layers, [&](const Layer& layer) { return layer.name == name; });
+  };
+  if (!has("variance")) layers.push_back({"variance", "RGB", std::move(finished.noise.variance)});
+  if (!has("samples")) layers.push_back({"samples", "", render.film.sampleCounts()});
+  return {std::move(finished.image), render.samples, finished.noise.noise};
+}
 
 class Viewer {
  public:

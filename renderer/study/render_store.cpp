@@ -30,6 +30,15 @@ double numberIn(const Metadata& metadata, const std::string& key) {
   return number;
 }
 
+// Attributes that are numbers.
+constexpr std::pair<const char*, double StoredRender::*> kNumbers[] = {
+    {"samples", &StoredRender::samples},
+    {"seconds", &StoredRender::seconds},
+    {"prepareSeconds", &StoredRender::prepareSeconds},
+    {"noise", &StoredRender::noise},
+    {"rays", &StoredRender::rays},
+    {"invalidSamples", &StoredRender::invalidSamples}};
+
 // The attributes by which a file identifies its render, so that none is taken for another.
 Metadata attributesOf(const RenderKey& key, uint64_t studySeed) {
   return {
@@ -71,27 +80,16 @@ std::optional<StoredRender> RenderStore::find(const RenderKey& key) const {
     throwInput("output: {} is damaged or was changed; delete it to render it again", path(key));
   StoredRender render;
   render.image = *color;
-  render.samples = numberIn(metadata, "samples");
-  render.seconds = numberIn(metadata, "seconds");
-  render.prepareSeconds = numberIn(metadata, "prepareSeconds");
-  render.noise = numberIn(metadata, "noise");
-  render.rays = numberIn(metadata, "rays");
-  render.invalidSamples = numberIn(metadata, "invalidSamples");
+  for (const auto& [name, number] : kNumbers) render.*number = numberIn(metadata, name);
   render.unbiased = textIn(metadata, "unbiased") == "yes";
   return render;
 }
 
 void RenderStore::save(const RenderKey& key, const StoredRender& render) const {
-  const auto text = [](double number) { return fmt::format("{}", number); };
   Metadata metadata = attributesOf(key, study_.seed);
-  metadata.insert({{"study", study_.identity},
-                   {"unbiased", render.unbiased ? "yes" : "no"},
-                   {"samples", text(render.samples)},
-                   {"seconds", text(render.seconds)},
-                   {"prepareSeconds", text(render.prepareSeconds)},
-                   {"noise", text(render.noise)},
-                   {"rays", text(render.rays)},
-                   {"invalidSamples", text(render.invalidSamples)}});
+  metadata.insert({{"study", study_.identity}, {"unbiased", render.unbiased ? "yes" : "no"}});
+  for (const auto& [name, number] : kNumbers)
+    metadata.emplace(name, fmt::format("{}", render.*number));
   writeImage(path(key), OutputImage{{{"", "RGB", render.image}}, metadata});
 }
 

@@ -110,9 +110,8 @@ std::vector<const Cell*> ranking(const Study& study, const StudyResults& results
   const std::optional<Budget> budget = largestCommonBudget(study, results);
   for (const StrategyResult& strategy : results.strategies)
     if (const Cell* cell = budget ? findCell(strategy, *budget) : nullptr) cells.push_back(cell);
-  std::stable_sort(cells.begin(), cells.end(), [](const Cell* a, const Cell* b) {
-    return a->efficiency.mean > b->efficiency.mean;
-  });
+  std::ranges::stable_sort(cells, std::ranges::greater(),
+                           [](const Cell* cell) { return cell->efficiency.mean; });
   return cells;
 }
 
@@ -203,9 +202,7 @@ std::vector<Contender> contenders(const StudyResults& results, const Budget& bud
   std::vector<Contender> sorted;
   for (const StrategyResult& strategy : results.strategies)
     if (const Cell* cell = findCell(strategy, budget)) sorted.push_back({cell, cost(*cell)});
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Contender& a, const Contender& b) {
-    return a.cost.mean < b.cost.mean;
-  });
+  std::ranges::stable_sort(sorted, {}, [](const Contender& c) { return c.cost.mean; });
   return sorted;
 }
 
@@ -236,10 +233,9 @@ std::string biasOf(const StrategyResult& strategy, bool hasNoisyReference) {
   if (!(strategy.squaredBias.low() > 0))
     return fmt::format("{} is biased, but its bias is not significant{}.", strategy.name,
                        hasNoisyReference ? " given the noise of this reference" : "");
-  std::string sentence = fmt::format(
-      "{} is biased: a relMSE of {} +- {} remains with any number "
-      "of samples",
-      strategy.name, size.number, size.halfInterval);
+  std::string sentence =
+      fmt::format("{} is biased: a relMSE of {} +- {} remains with any number of samples",
+                  strategy.name, size.number, size.halfInterval);
   if (const auto& crossing = strategy.biasEqualsNoise)
     sentence += fmt::format("; bias exceeds noise above {} samples per pixel ({} to {})",
                             shortNumber(crossing->samples, 2), shortNumber(crossing->low, 2),
@@ -255,19 +251,17 @@ std::vector<std::string> verdict(const Study& study, const StudyResults& results
       largestCommonBudget(study, results, [](const Budget& budget) { return !budget.timed; });
   const auto seconds =
       largestCommonBudget(study, results, [](const Budget& budget) { return budget.timed; });
-  if (samples)
-    sentences.push_back(winner(contenders(results, *samples, relMse),
-                               fmt::format("At equal samples ({})", samples->label()), "relMSE",
+  const auto add = [&](const Budget& budget, Estimate (*cost)(const Cell&), const char* condition,
+                       const char* metric) {
+    sentences.push_back(winner(contenders(results, budget, cost),
+                               fmt::format("{}{})", condition, budget.label()), metric,
                                study.baseline));
+  };
+  if (samples) add(*samples, relMse, "At equal samples (", "relMSE");
   if (seconds)
-    sentences.push_back(winner(contenders(results, *seconds, relMse),
-                               fmt::format("At equal time ({})", seconds->label()), "relMSE",
-                               study.baseline));
+    add(*seconds, relMse, "At equal time (", "relMSE");
   else if (samples)
-    sentences.push_back(
-        winner(contenders(results, *samples, relMseTimesSeconds),
-               fmt::format("At equal time (extrapolated from {})", samples->label()),
-               "relMSE x seconds", study.baseline));
+    add(*samples, relMseTimesSeconds, "At equal time (extrapolated from ", "relMSE x seconds");
   for (const StrategyResult& strategy : results.strategies)
     if (!strategy.unbiased)
       if (std::string text = biasOf(strategy, results.referenceErrorKnown); !text.empty())

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include <fmt/format.h>
 
@@ -75,8 +76,7 @@ Estimate efficiency(const Cell& cell, const Cell& baseline) {
 }
 
 void compareWithBaseline(std::vector<StrategyResult>& strategies, const std::string& baseline) {
-  const auto base = std::find_if(strategies.begin(), strategies.end(),
-                                 [&](const StrategyResult& s) { return s.name == baseline; });
+  const auto base = std::ranges::find(strategies, baseline, &StrategyResult::name);
   for (StrategyResult& strategy : strategies)
     for (Cell& cell : strategy.cells) {
       const Cell* other = findCell(*base, cell.budget);
@@ -181,15 +181,15 @@ const Cell* findCell(const StrategyResult& strategy, const Budget& budget) {
 std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results,
                                           bool (*isWanted)(const Budget&)) {
   const auto has = [&](const std::string& name, const Budget& budget) {
-    return std::any_of(
-        results.strategies.begin(), results.strategies.end(),
-        [&](const StrategyResult& s) { return s.name == name && findCell(s, budget); });
+    return std::ranges::any_of(results.strategies, [&](const StrategyResult& s) {
+      return s.name == name && findCell(s, budget);
+    });
   };
-  for (auto budget = study.shownBudgets.rbegin(); budget != study.shownBudgets.rend(); ++budget)
-    if (isWanted(*budget) &&
-        std::all_of(study.strategies.begin(), study.strategies.end(),
-                    [&](const std::string& name) { return has(name, *budget); }))
-      return *budget;
+  for (const Budget& budget : study.shownBudgets | std::views::reverse)
+    if (isWanted(budget) && std::ranges::all_of(study.strategies, [&](const std::string& name) {
+          return has(name, budget);
+        }))
+      return budget;
   return std::nullopt;
 }
 

@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <span>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/text.h"
 #include "description/capabilities.h"
 #include "lighting/methods.h"
 
@@ -62,36 +63,29 @@ constexpr ModeName kModes[] = {{Mode::Adaptive, "adaptive"},
 constexpr std::string_view kDiffuseDepth = "diffuse-depth:", kSpecularDepth = "specular-depth:",
                            kCache = "irradiance-cache:";
 
-int depthOf(std::string_view text, const std::string& name, const std::string& location) {
-  int depth = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), depth);
-  if (error != std::errc() || end != text.data() + text.size() || depth < 0)
-    throwInput("{}: `{}` needs a whole number from 0", location, name);
-  return depth;
+// Whether it is a mode with a number, such as "diffuse-depth:2", which it sets.
+template <class Number>
+bool takeNumbered(std::string_view prefix, const std::string& name, const std::string& location,
+                  bool (*isIn)(Number), const char* range, std::optional<Number>& number) {
+  if (!name.starts_with(prefix)) return false;
+  if (!toNumber(std::string_view(name).substr(prefix.size()), number.emplace()) || !isIn(*number))
+    throwInput("{}: `{}` needs {}", location, name, range);
+  return true;
 }
 
-float cacheErrorOf(std::string_view text, const std::string& name, const std::string& location) {
-  float error = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), error);
-  if (failure != std::errc() || end != text.data() + text.size() || !(error > 0 && error <= 1))
-    throwInput("{}: `{}` needs a number above 0 and at most 1", location, name);
-  return error;
+bool takeDepth(std::string_view prefix, const std::string& name, const std::string& location,
+               std::optional<int>& depth) {
+  return takeNumbered<int>(
+      prefix, name, location, [](int n) { return n >= 0; }, "a whole number from 0", depth);
 }
 
 void addMode(const std::string& name, const std::string& location, Row& row) {
-  if (name.starts_with(kDiffuseDepth)) {
-    row.diffuseDepth = depthOf(std::string_view(name).substr(kDiffuseDepth.size()), name, location);
+  if (takeDepth(kDiffuseDepth, name, location, row.diffuseDepth) ||
+      takeDepth(kSpecularDepth, name, location, row.specularDepth) ||
+      takeNumbered<float>(
+          kCache, name, location, [](float x) { return x > 0 && x <= 1; },
+          "a number above 0 and at most 1", row.cacheError))
     return;
-  }
-  if (name.starts_with(kSpecularDepth)) {
-    row.specularDepth =
-        depthOf(std::string_view(name).substr(kSpecularDepth.size()), name, location);
-    return;
-  }
-  if (name.starts_with(kCache)) {
-    row.cacheError = cacheErrorOf(std::string_view(name).substr(kCache.size()), name, location);
-    return;
-  }
   const auto integrator = std::ranges::find(kIntegratorNames, name);
   if (integrator != kIntegratorNames.end()) {
     row.integrator = IntegratorKind(integrator - kIntegratorNames.begin());
@@ -172,14 +166,11 @@ void Row::applyTo(RenderDescription& description) const {
 }
 
 Row rowNamed(const std::string& name, const std::string& location) {
-  size_t end = name.find('+');
+  const auto parts = splitAt(name, '+');
   Row row;
-  row.strategy = resolveStrategy(name.substr(0, end));
-  while (end != std::string::npos) {
-    const size_t begin = end + 1;
-    end = name.find('+', begin);
-    addMode(name.substr(begin, end - begin), location, row);
-  }
+  row.strategy = resolveStrategy(std::string(parts.front()));
+  for (const std::string_view mode : std::span(parts).subspan(1))
+    addMode(std::string(mode), location, row);
   std::ranges::sort(row.modes);
   check(row, location);
   return row;

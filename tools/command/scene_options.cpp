@@ -36,7 +36,8 @@ std::string wrapped(const std::string& text, size_t width) {
 std::string helpOf(const Setting& setting) {
   constexpr size_t kWidth = 68;
   std::string text(setting.help);
-  if (setting.choices) text += fmt::format(" Names: {}.", fmt::join(setting.choices(), ", "));
+  if (!setting.choices.empty())
+    text += fmt::format(" Names: {}.", fmt::join(setting.choices, ", "));
   if (setting.type != SettingType::Flag)
     text += fmt::format(" (default: {})", defaultText(setting));
   return wrapped(text, kWidth);
@@ -76,7 +77,7 @@ bool isList(const Setting& setting) {
 }
 
 void addSettingOption(Command app, const Setting& setting, Settings& settings) {
-  const std::string name = "--" + std::string(setting.option);
+  const std::string name = "--" + setting.option;
   const std::string names = setting.letter ? fmt::format("-{},{}", setting.letter, name) : name;
   const auto set = [&setting, &settings, name](const std::vector<std::string>& words) {
     settings.set(setting.name(), parseSetting(setting, words, name), name);

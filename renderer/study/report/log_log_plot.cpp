@@ -126,9 +126,8 @@ std::string legendOf(const std::vector<PlotSeries>& series) {
     const Style style = styleOf(i);
     const double y = 12 + 22 * double(i);
     svg += fmt::format(
-        "<path d=\"M0 {0}h40\" stroke=\"{1}\" stroke-width=\"1.6\" "
-        "stroke-dasharray=\"{2}\"/>\n",
-        y, style.color, style.dash);
+        "<path d=\"M0 {0}h40\" stroke=\"{1}\" stroke-width=\"1.6\" stroke-dasharray=\"{2}\"/>\n", y,
+        style.color, style.dash);
     svg += mark(style, 20, y) + svgText(48, y + 4, "start", series[i].name);
   }
   return svg;
@@ -149,11 +148,7 @@ std::string logLogPlot(const std::string& title, const std::string& xLabel,
 
   const double plots = kLeft + double(panels.size()) * (kPanelWidth + kGap);
   const double width = plots + kLegendWidth, height = kTop + kPanelHeight + kBottom;
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\">\n"
-      "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-      width, height);
+  std::string svg = svgHead(width, height);
   svg += svgText(plots / 2, 22, "middle", title);
   svg += svgText(plots / 2, height - 14, "middle", xLabel);
   svg += fmt::format("<g transform=\"translate(16 {}) rotate(-90)\">\n", kTop + kPanelHeight / 2) +
@@ -184,6 +179,14 @@ std::string escaped(const std::string& text) {
       result += c;
   }
   return result;
+}
+
+std::string svgHead(double width, double height) {
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+      "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\">\n"
+      "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
+      width, height);
 }
 
 std::string svgText(double x, double y, const char* anchor, const std::string& text) {

@@ -35,6 +35,9 @@ std::string logLogPlot(const std::string& title, const std::string& xLabel,
 // Escapes & < and ", and drops control characters.
 std::string escaped(const std::string& text);
 
+// The begin of an SVG of this size in pixels, on white.
+std::string svgHead(double width, double height);
+
 // An SVG text element, in pixels; `anchor` is start, middle or end.
 std::string svgText(double x, double y, const char* anchor, const std::string& text);
 

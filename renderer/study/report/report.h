@@ -26,12 +26,4 @@ std::string secondsPlot(const StudyResults& results);
 std::string reportHtml(const Study& study, const RenderStore& store, const StudyResults& results,
                        const ReportScene& scene, const Machine& machine);
 
-// The tables of the report, in HTML.
-
-// The strategies with the largest common budget, the most efficient first.
-std::string resultsHtml(const Study& study, const StudyResults& results);
-
-// The pairs of unbiased strategies that were tested for agreement.
-std::string pairsHtml(const StudyResults& results);
-
 }  // namespace chromeball

@@ -126,6 +126,26 @@ double commonScale(const std::vector<Image>& maps) {
   return roundUp(percentile(std::move(numbers), 0.99));
 }
 
+// The cell of each strategy whose render time is nearest to the longest time that all strategies
+// reach.
+std::vector<const Cell*> equalTimeCells(const StudyResults& results) {
+  double seconds = std::numeric_limits<double>::max();
+  for (const StrategyResult& strategy : results.strategies)
+    if (!strategy.cells.empty()) seconds = std::min(seconds, strategy.cells.back().seconds.mean);
+  std::vector<const Cell*> cells;
+  for (const StrategyResult& strategy : results.strategies) {
+    const Cell* nearest = nullptr;
+    for (const Cell& cell : strategy.cells) {
+      const auto distance = [&](const Cell& c) {
+        return std::fabs(std::log(c.seconds.mean / seconds));
+      };
+      if (!nearest || distance(cell) < distance(*nearest)) nearest = &cell;
+    }
+    if (nearest) cells.push_back(nearest);
+  }
+  return cells;
+}
+
 void addImages(Json& json, const RenderStore& store, const StudyResults& results) {
   std::vector<Image> errors;
   json["images"] = Json::array();
@@ -165,24 +185,6 @@ void addBias(Json& json, const RenderStore& store, const StudyResults& results) 
 
 std::string pngUri(int width, int height, int channels, std::span<const uint8_t> bytes) {
   return "data:image/png;base64," + base64(encodePng(width, height, channels, bytes));
-}
-
-std::vector<const Cell*> equalTimeCells(const StudyResults& results) {
-  double seconds = std::numeric_limits<double>::max();
-  for (const StrategyResult& strategy : results.strategies)
-    if (!strategy.cells.empty()) seconds = std::min(seconds, strategy.cells.back().seconds.mean);
-  std::vector<const Cell*> cells;
-  for (const StrategyResult& strategy : results.strategies) {
-    const Cell* nearest = nullptr;
-    for (const Cell& cell : strategy.cells) {
-      const auto distance = [&](const Cell& c) {
-        return std::fabs(std::log(c.seconds.mean / seconds));
-      };
-      if (!nearest || distance(cell) < distance(*nearest)) nearest = &cell;
-    }
-    if (nearest) cells.push_back(nearest);
-  }
-  return cells;
 }
 
 Json reportImages(const RenderStore& store, const StudyResults& results) {

@@ -28,10 +28,6 @@ namespace chromeball {
 //   zScale              |z| at the ends of these maps
 nlohmann::ordered_json reportImages(const RenderStore& store, const StudyResults& results);
 
-// The cell of each strategy whose render time is nearest to the longest time that all strategies
-// reach.
-std::vector<const Cell*> equalTimeCells(const StudyResults& results);
-
 std::string pngUri(int width, int height, int channels, std::span<const uint8_t> bytes);
 
 // The directions that a strategy samples, for display.

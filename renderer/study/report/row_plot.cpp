@@ -89,8 +89,8 @@ std::string frame(const AzimuthAxis& azimuth, double top) {
                    kPlotLeft, top, kWidth, kPanel);
 }
 
-std::string verticalLabel(double top, const std::string& text) {
-  return fmt::format("<g transform=\"translate(18 {}) rotate(-90)\">{}</g>\n", top + kPanel / 2,
+std::string verticalLabel(double middle, const std::string& text) {
+  return fmt::format("<g transform=\"translate(18 {}) rotate(-90)\">{}</g>\n", middle,
                      svgText(0, 0, "middle", text));
 }
 
@@ -124,7 +124,7 @@ std::string luminancePanel(const RowDistribution& row, const AzimuthAxis& azimut
   svg += fmt::format(
       "<path class=\"luminance\" d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\"/>\n",
       path, kLine);
-  return svg + verticalLabel(kPlotTop, fmt::format("luminance of row {}", row.row));
+  return svg + verticalLabel(kPlotTop + kPanel / 2, fmt::format("luminance of row {}", row.row));
 }
 
 double cdfY(double number) { return kCdfBottom - kPanel * number; }
@@ -162,14 +162,12 @@ std::string cdfPanel(const RowDistribution& row, const AzimuthAxis& azimuth) {
   }
   svg += arrows(row, azimuth);
   svg += fmt::format(
-      "<path class=\"cdf\" d=\"{}\" fill=\"none\" stroke=\"#111\" "
-      "stroke-width=\"1.8\"/>\n",
-      path);
+      "<path class=\"cdf\" d=\"{}\" fill=\"none\" stroke=\"#111\" stroke-width=\"1.8\"/>\n", path);
   for (const double tick : azimuth.ticks())
     svg += svgText(azimuth(tick), kCdfBottom + 18, "middle", fmt::format("{:.6g}", tick));
   svg += svgText(kPlotLeft + kWidth / 2, kCdfBottom + 36, "middle",
                  "azimuth (degrees from -Z, counter-clockwise seen from above)");
-  return svg + verticalLabel(kCdfTop, "cdf");
+  return svg + verticalLabel(kCdfTop + kPanel / 2, "cdf");
 }
 
 // The probe around the row, with square degrees, as a PNG of half the resolution of the plot.
@@ -200,19 +198,14 @@ std::string strip(const Probe& probe, const RowDistribution& row, const AzimuthA
   svg += fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"1.4\"/>\n", marks, kArrow);
   svg += svgText(kPlotLeft - 8, kStripTop + 11, "end", fmt::format("{:.1f}", top));
   svg += svgText(kPlotLeft - 8, kStripTop + kStrip, "end", fmt::format("{:.1f}", top - degrees));
-  return svg + fmt::format("<g transform=\"translate(18 {}) rotate(-90)\">{}</g>\n",
-                           kStripTop + kStrip / 2, svgText(0, 0, "middle", "elevation"));
+  return svg + verticalLabel(kStripTop + kStrip / 2, "elevation");
 }
 
 }  // namespace
 
 std::string rowPlot(const Probe& probe, const RowDistribution& row, const std::string& title) {
   const AzimuthAxis azimuth{row.azimuths.front(), row.azimuths.back()};
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\">\n"
-      "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-      kPlotLeft + kWidth + kRight, kStripTop + kStrip + kPlotBottom);
+  std::string svg = svgHead(kPlotLeft + kWidth + kRight, kStripTop + kStrip + kPlotBottom);
   svg += fmt::format("<g font-size=\"14\">{}</g>\n",
                      svgText(kPlotLeft + kWidth / 2, 26, "middle", title));
   svg += luminancePanel(row, azimuth) + cdfPanel(row, azimuth) + strip(probe, row, azimuth);
