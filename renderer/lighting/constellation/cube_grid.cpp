@@ -40,10 +40,6 @@ Constellation cubeGrid(const TexelTable& table, int n) {
   return lights;
 }
 
-Constellation cubeGrid(const Image& latLong, int n) {
-  return cubeGrid(TexelTable(latLong, kFineCells), n);
-}
-
 Partition cubeGridRegions(const Image& latLong, int n) {
   Partition partition{6 * n * n, {}};
   partition.label.reserve(size_t(latLong.width) * latLong.height);

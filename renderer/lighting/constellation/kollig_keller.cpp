@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "base/hash.h"
-#include "lighting/constellation/spherical_kmeans.h"
 #include "probe/mapping.h"
 #include "probe/solid_angle.h"
 
@@ -17,17 +16,6 @@ namespace {
 // Relative decrease of the objective at which iteration stops while lights are being added; each
 // added light decreases it far more.
 constexpr double kTolerance = 1e-3;
-
-SphericalKMeans cluster(const TexelTable& table, int count) {
-  SphericalKMeans kMeans(table);
-  count = std::min(count, kMeans.litCells());
-  for (int i = 0; i < count; ++i) {
-    kMeans.addCentreAtWorst();
-    kMeans.converge(kTolerance);
-  }
-  kMeans.converge(0);
-  return kMeans;
-}
 
 // A direction in the texel, uniform over its solid angle.
 dvec3 pointInTexel(const Image& latLong, int x, int y, const dvec2& random) {
@@ -49,19 +37,39 @@ void forEachTexel(const Image& latLong, const Partition& partition, Visit visit)
   }
 }
 
-}  // namespace
+constexpr int kStarts = 4;
 
-Constellation kolligKeller(const TexelTable& table, int count) {
-  return cluster(table, count).lights();
+// `count` different lit cells, drawn without replacement with probability proportional to weight:
+// the cells with the smallest -log(u) / weight (Efraimidis and Spirakis 2006).
+std::vector<int> drawCells(const SphericalKMeans& kMeans, int count, uint64_t key) {
+  std::vector<double> order(kMeans.litCells());
+  for (int i = 0; i < kMeans.litCells(); ++i)
+    order[i] = -std::log(toUnit(uint32_t(hash(key, i))) + 0x1p-25) / kMeans.weight(i);
+  std::vector<int> cells(order.size());
+  std::iota(cells.begin(), cells.end(), 0);
+  std::partial_sort(cells.begin(), cells.begin() + count, cells.end(), [&](int a, int b) {
+    return order[a] != order[b] ? order[a] < order[b] : a < b;
+  });
+  cells.resize(count);
+  return cells;
 }
 
-Constellation kolligKeller(const Image& latLong, int count) {
-  return kolligKeller(TexelTable(latLong, kCoarseCells), count);
+}  // namespace
+
+SphericalKMeans kolligKellerClusters(const TexelTable& table, int count) {
+  SphericalKMeans kMeans(table);
+  count = std::min(count, kMeans.litCells());
+  for (int i = 0; i < count; ++i) {
+    kMeans.addCentreAtWorst();
+    kMeans.converge(kTolerance);
+  }
+  kMeans.converge(0);
+  return kMeans;
 }
 
 Partition kolligKellerRegions(const Image& latLong, int count) {
   const TexelTable table(latLong, kCoarseCells);
-  return cluster(table, count).partition(latLong);
+  return kolligKellerClusters(table, count).partition(latLong);
 }
 
 Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed) {
@@ -87,27 +95,7 @@ Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed)
   return lights;
 }
 
-namespace {
-
-constexpr int kStarts = 4;
-
-// `count` different lit cells, drawn without replacement with probability proportional to weight:
-// the cells with the smallest -log(u) / weight (Efraimidis and Spirakis 2006).
-std::vector<int> drawCells(const SphericalKMeans& kMeans, int count, uint64_t key) {
-  std::vector<double> order(kMeans.litCells());
-  for (int i = 0; i < kMeans.litCells(); ++i)
-    order[i] = -std::log(toUnit(uint32_t(hash(key, i))) + 0x1p-25) / kMeans.weight(i);
-  std::vector<int> cells(order.size());
-  std::iota(cells.begin(), cells.end(), 0);
-  std::partial_sort(cells.begin(), cells.begin() + count, cells.end(), [&](int a, int b) {
-    return order[a] != order[b] ? order[a] < order[b] : a < b;
-  });
-  cells.resize(count);
-  return cells;
-}
-
-// The clusters with the smallest objective.
-SphericalKMeans cluster(const TexelTable& table, int count, uint64_t seed) {
+SphericalKMeans lightGenClusters(const TexelTable& table, int count, uint64_t seed) {
   const SphericalKMeans empty(table);
   std::optional<SphericalKMeans> best;
   double minimum = std::numeric_limits<double>::infinity();
@@ -121,21 +109,6 @@ SphericalKMeans cluster(const TexelTable& table, int count, uint64_t seed) {
     best.emplace(std::move(kMeans));
   }
   return *best;
-}
-
-}  // namespace
-
-Constellation lightGen(const TexelTable& table, int count, uint64_t seed) {
-  return cluster(table, count, seed).lights();
-}
-
-Constellation lightGen(const Image& latLong, int count, uint64_t seed) {
-  return lightGen(TexelTable(latLong, kCoarseCells), count, seed);
-}
-
-Partition lightGenRegions(const Image& latLong, int count, uint64_t seed) {
-  const TexelTable table(latLong, kCoarseCells);
-  return cluster(table, count, seed).partition(latLong);
 }
 
 }  // namespace chromeball

@@ -39,7 +39,8 @@ class SphericalKMeans {
   Constellation lights() const;     // one for each centre
   std::vector<int> labels() const;  // the centre of each cell of the table, lit or not
 
-  // The nearest centre of each texel of the table's map; no region without centres.
+  // The centre of each texel of the table's map: of a black cell the nearest; no region without
+  // centres.
   Partition partition(const Image& latLong) const;
 
  private:
