@@ -180,7 +180,7 @@ LightAreas::Sample RegionAreas::sample(size_t light, double u, double v) const {
 }
 
 AreaLights::AreaLights(const Probe& probe, std::unique_ptr<const LightAreas> areas)
-    : probe_(probe),
+    : ProbeLight(probe),
       areas_(std::move(areas)),
       choice_(1, std::max(1, int(areas_->lights().size()))) {
   std::vector<double> powers;

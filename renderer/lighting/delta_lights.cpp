@@ -19,7 +19,7 @@ float importance(const DirectionSample& light, const LightPoint& point) {
 }  // namespace
 
 DeltaLights::DeltaLights(const Probe& probe, const Constellation& lights, const Rgb& ambient)
-    : probe_(probe), ambient_(ambient), count_(lights.size()) {
+    : ProbeLight(probe), ambient_(ambient), count_(lights.size()) {
   for (size_t i = 0; i < count_; ++i)
     if (const DirectionalLight& light = lights[i]; !isBlack(light.irradiance))
       lights_.push_back(
@@ -79,7 +79,7 @@ std::vector<AreaLight> large(std::vector<AreaLight> lights) {
 
 ShownLights::ShownLights(std::unique_ptr<LightSource> strategy, std::vector<AreaLight> lights,
                          const Rgb& ambient)
-    : strategy_(std::move(strategy)), discs_(large(std::move(lights))), ambient_(ambient) {}
+    : WrappedLight(std::move(strategy)), discs_(large(std::move(lights))), ambient_(ambient) {}
 
 std::vector<AreaLight> shownLights(const Constellation& lights, const Rotation& rotation) {
   std::vector<AreaLight> shown;

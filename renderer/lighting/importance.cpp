@@ -32,7 +32,7 @@ double meanLuminance(const Probe& probe) {
 }  // namespace
 
 Importance::Importance(const Probe& probe, bool compensated)
-    : probe_(probe),
+    : ProbeLight(probe),
       field_(probe),
       rows_(1, probe.cellRows()),
       columns_(probe.cellRows(), probe.width()),

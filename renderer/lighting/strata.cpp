@@ -40,7 +40,7 @@ Stratum::Cell Stratum::choose(double& u, double& v) const {
 }
 
 Strata::Strata(const Probe& probe, int regions)
-    : probe_(probe),
+    : ProbeLight(probe),
       field_(probe),
       partition_(kolligKellerRegions(probe.latLong(), regions)),
       strata_(partition_.regions),

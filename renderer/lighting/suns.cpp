@@ -89,7 +89,7 @@ SplitProbe::SplitProbe(std::unique_ptr<LightSource> strategy, const Probe& probe
 
 SplitProbe::SplitProbe(std::unique_ptr<LightSource> strategy, const SunExtraction& extraction,
                        const Rotation& rotation)
-    : strategy_(std::move(strategy)),
+    : WrappedLight(std::move(strategy)),
       hasSuns_(!extraction.suns.empty()),
       rest_(extraction.remainder, rotation) {}
 

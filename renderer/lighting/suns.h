@@ -121,17 +121,10 @@ class Suns : public LightSource {
 // groups.
 
 // Samples and radiances are the strategy's.
-class SplitProbe : public LightSource {
+class SplitProbe : public WrappedLight {
  public:
   SplitProbe(std::unique_ptr<LightSource> strategy, const Probe& probe);
 
-  void sample(const LightPoint& point, const PixelSampler& sampler,
-              std::vector<DirectionSample>& out) const override {
-    strategy_->sample(point, sampler, out);
-  }
-  Escaped escaped(const LightPoint& point, const vec3& wi) const override {
-    return strategy_->escaped(point, wi);
-  }
   void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const override {
     strategy_->escapedMany(rays, out);
   }
@@ -139,12 +132,9 @@ class SplitProbe : public LightSource {
                   std::span<DirectionSample> out) const override {
     return strategy_->sampleMany(numbers, out);
   }
-  bool takesOneSample() const override { return strategy_->takesOneSample(); }
   Rgb background(const vec3& origin, const vec3& wi) const override {
     return strategy_->background(origin, wi);
   }
-  float mirrorAlpha() const override { return strategy_->mirrorAlpha(); }
-  bool unbiased() const override { return strategy_->unbiased(); }
 
   std::vector<std::string> groups() const override;
   void splitEscaped(const LightPoint& point, const vec3& wi,
@@ -161,7 +151,6 @@ class SplitProbe : public LightSource {
              const Rotation& rotation);
   void split(const Rgb& whole, const vec3& wi, std::span<Rgb> radiances) const;
 
-  std::unique_ptr<LightSource> strategy_;
   bool hasSuns_;
   Probe rest_;  // without the suns
 };
