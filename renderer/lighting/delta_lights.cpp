@@ -16,6 +16,17 @@ float importance(const DirectionSample& light, const LightPoint& point) {
   return luminance(light.irradiance) * std::max(glm::dot(light.wi, point.normal), 0.0f);
 }
 
+double smallestSolidAngle() {
+  const double chord = 2 * std::sin(ShownLights::kShownDegrees * kPiD / 720);
+  return kPiD * chord * chord;
+}
+
+std::vector<AreaLight> large(std::vector<AreaLight> lights) {
+  for (AreaLight& light : lights)
+    light.solidAngle = std::max(light.solidAngle, smallestSolidAngle());
+  return lights;
+}
+
 }  // namespace
 
 DeltaLights::DeltaLights(const Probe& probe, const Constellation& lights, const Rgb& ambient)
@@ -61,21 +72,6 @@ void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
   }
   out.resize(kept);
 }
-
-namespace {
-
-double smallestSolidAngle() {
-  const double chord = 2 * std::sin(ShownLights::kShownDegrees * kPiD / 720);
-  return kPiD * chord * chord;
-}
-
-std::vector<AreaLight> large(std::vector<AreaLight> lights) {
-  for (AreaLight& light : lights)
-    light.solidAngle = std::max(light.solidAngle, smallestSolidAngle());
-  return lights;
-}
-
-}  // namespace
 
 ShownLights::ShownLights(std::unique_ptr<LightSource> strategy, std::vector<AreaLight> lights,
                          const Rgb& ambient)

@@ -66,6 +66,11 @@ class LightSource {
   struct Escaped {
     Rgb radiance;
     float pdf;
+
+    Escaped& operator+=(const Escaped& other) {
+      radiance += other.radiance, pdf += other.pdf;
+      return *this;
+    }
   };
   virtual Escaped escaped(const LightPoint&, const vec3&) const { return {Rgb(0), 0}; }
 

@@ -46,19 +46,18 @@ void SceneSuns::sample(const LightPoint&, const PixelSampler& sampler,
                        std::vector<DirectionSample>& out) const {
   const uint32_t u = sampler.bits(dimension::kLight), v = sampler.bits(dimension::kLight + 1);
   all_.sample(u, v, kSceneSunSet, [&](const vec3& wi) {
-    const SkyDiscs::Light light = all_.at(wi);
+    const Escaped light = all_.at(wi);
     if (light.pdf > 0) out.push_back({wi, light.radiance / light.pdf, light.pdf});
   });
 }
 
 void SceneSuns::splitEscaped(const LightPoint&, const vec3& wi, std::span<Rgb> radiances) const {
-  all_.forDiscsAt(wi,
-                  [&](size_t i, const SkyDiscs::Light& disc) { radiances[i] += disc.radiance; });
+  all_.forDiscsAt(wi, [&](size_t i, const Escaped& disc) { radiances[i] += disc.radiance; });
 }
 
 void SceneSuns::splitBackground(const vec3&, const vec3& wi, std::span<Rgb> radiances) const {
-  visible_.forDiscsAt(
-      wi, [&](size_t i, const SkyDiscs::Light& disc) { radiances[seen_[i]] += disc.radiance; });
+  visible_.forDiscsAt(wi,
+                      [&](size_t i, const Escaped& disc) { radiances[seen_[i]] += disc.radiance; });
 }
 
 CombinedLight::CombinedLight(std::vector<std::unique_ptr<LightSource>> parts)
@@ -78,12 +77,8 @@ void CombinedLight::sample(const LightPoint& point, const PixelSampler& sampler,
       s.group += firstGroup;
       if (s.isDelta) continue;
       Escaped sum{s.irradiance * s.pdf, s.pdf};
-      for (const auto& other : parts_) {
-        if (other == part) continue;
-        const Escaped light = other->escaped(point, s.wi);
-        sum.radiance += light.radiance;
-        sum.pdf += light.pdf;
-      }
+      for (const auto& other : parts_)
+        if (other != part) sum += other->escaped(point, s.wi);
       s.irradiance = sum.radiance / sum.pdf;
       s.pdf = sum.pdf;
     }
@@ -92,11 +87,7 @@ void CombinedLight::sample(const LightPoint& point, const PixelSampler& sampler,
 
 LightSource::Escaped CombinedLight::escaped(const LightPoint& point, const vec3& wi) const {
   Escaped sum{Rgb(0), 0};
-  for (const auto& part : parts_) {
-    const Escaped light = part->escaped(point, wi);
-    sum.radiance += light.radiance;
-    sum.pdf += light.pdf;
-  }
+  for (const auto& part : parts_) sum += part->escaped(point, wi);
   return sum;
 }
 

@@ -30,10 +30,7 @@ class SceneSuns : public LightSource {
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
-  Escaped escaped(const LightPoint&, const vec3& wi) const override {
-    const SkyDiscs::Light light = all_.at(wi);
-    return {light.radiance, light.pdf};
-  }
+  Escaped escaped(const LightPoint&, const vec3& wi) const override { return all_.at(wi); }
   Rgb background(const vec3&, const vec3& wi) const override { return visible_.at(wi).radiance; }
   std::vector<std::string> groups() const override { return names_; }
   void splitEscaped(const LightPoint& point, const vec3& wi,

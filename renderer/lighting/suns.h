@@ -49,31 +49,24 @@ class SkyDiscs {
     }
   }
 
-  // The sum over all discs in a direction.
-  struct Light {
-    Rgb radiance{0};
-    float pdf = 0;  // of sample(), over solid angle: the sum over its directions
-  };
+  // The sum over all discs in a direction; the pdf is that of sample().
+  using Light = LightSource::Escaped;
   Light at(const vec3& wi) const {
-    Light light;
-    forDiscsAt(wi, [&](size_t, const Light& disc) {
-      light.radiance += disc.radiance;
-      light.pdf += disc.pdf;
-    });
-    return light;
+    Light sum{Rgb(0), 0};
+    forDiscsAt(wi, [&](size_t, const Light& disc) { sum += disc; });
+    return sum;
   }
   // Calls visit(index of the sun, its Light) for each disc in the direction.
   template <class Visit>
   void forDiscsAt(const vec3& wi, const Visit& visit) const {
     for (size_t i = 0; i < discs_.size(); ++i)
-      if (discs_[i].cap.contains(wi)) visit(i, Light{discs_[i].radiance, discs_[i].pdf});
+      if (discs_[i].cap.contains(wi)) visit(i, discs_[i].light);
   }
 
  private:
   struct Disc {
     SphericalCap cap;
-    Rgb radiance;
-    float pdf;  // inside this disc
+    Light light;  // inside this disc
   };
 
   std::vector<Disc> discs_;
