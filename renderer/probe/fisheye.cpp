@@ -20,13 +20,26 @@ constexpr std::string_view kFisheye = "fisheye";
 struct NamedProjection {
   std::string_view name;
   FisheyeProjection projection;
-  double largestFieldOfView;  // degrees
+  double largestFieldOfView;                                // degrees
+  double (*radius)(double angle), (*angle)(double radius);  // radius at a focal length of 1
 };
+
+// In the order of FisheyeProjection.
 constexpr std::array<NamedProjection, 4> kProjections{
-    {{"equidistant", FisheyeProjection::Equidistant, 360},
-     {"equisolid", FisheyeProjection::Equisolid, 360},
-     {"orthographic", FisheyeProjection::Orthographic, 180},
-     {"stereographic", FisheyeProjection::Stereographic, 300}}};
+    {{"equidistant", FisheyeProjection::Equidistant, 360,  //
+      [](double t) { return t; }, [](double r) { return r; }},
+     {"equisolid", FisheyeProjection::Equisolid, 360,  //
+      [](double t) { return std::sin(0.5 * t); }, [](double r) { return 2 * std::asin(r); }},
+     {"orthographic", FisheyeProjection::Orthographic, 180,
+      // The sine falls again behind the lens: its reflection at 1 goes on rising.
+      [](double t) { return t <= 0.5 * kPiD ? std::sin(t) : 2 - std::sin(t); },
+      [](double r) { return std::asin(r); }},
+     {"stereographic", FisheyeProjection::Stereographic, 300,  //
+      [](double t) { return std::tan(0.5 * t); }, [](double r) { return 2 * std::atan(r); }}}};
+
+const NamedProjection& projectionOf(FisheyeProjection projection) {
+  return kProjections[size_t(projection)];
+}
 
 const NamedProjection& projectionNamed(std::string_view name, std::string_view location) {
   std::vector<std::string_view> known;
@@ -48,34 +61,11 @@ double Fisheye::solidAngle() const {
 }
 
 double Fisheye::radius(double t) const {
-  const double h = halfAngle();
-  switch (projection) {
-    case FisheyeProjection::Equidistant:
-      return t / h;
-    case FisheyeProjection::Equisolid:
-      return std::sin(0.5 * t) / std::sin(0.5 * h);
-    case FisheyeProjection::Orthographic:
-      // The sine falls again behind the lens: its reflection at 1 goes on rising.
-      return (t <= 0.5 * kPiD ? std::sin(t) : 2 - std::sin(t)) / std::sin(h);
-    case FisheyeProjection::Stereographic:
-      return std::tan(0.5 * t) / std::tan(0.5 * h);
-  }
-  return 0;
+  return projectionOf(projection).radius(t) / projectionOf(projection).radius(halfAngle());
 }
 
 double Fisheye::angle(double r) const {
-  const double h = halfAngle();
-  switch (projection) {
-    case FisheyeProjection::Equidistant:
-      return h * r;
-    case FisheyeProjection::Equisolid:
-      return 2 * std::asin(std::sin(0.5 * h) * r);
-    case FisheyeProjection::Orthographic:
-      return std::asin(std::sin(h) * r);
-    case FisheyeProjection::Stereographic:
-      return 2 * std::atan(std::tan(0.5 * h) * r);
-  }
-  return 0;
+  return projectionOf(projection).angle(projectionOf(projection).radius(halfAngle()) * r);
 }
 
 // sin(t) (dt/dr) / r.
@@ -101,8 +91,7 @@ double Fisheye::solidAngleJacobian(double r) const {
 }
 
 std::string fisheyeName(const Fisheye& lens) {
-  return fmt::format("{}:{}:{}", kFisheye, lens.fieldOfView,
-                     kProjections[size_t(lens.projection)].name);
+  return fmt::format("{}:{}:{}", kFisheye, lens.fieldOfView, projectionOf(lens.projection).name);
 }
 
 bool namesFisheye(std::string_view name) {
