@@ -235,11 +235,9 @@ DisplayTransform previewTransform(const Image& latLong) {
 Image probePreview(const Probe& probe, int width) {
   const DisplayTransform transform = previewTransform(probe.latLong());
   const ImageSize size{width, width / 2};
-  Image preview(size.width, size.height, 3);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x)
-      preview.setRgb(x, y, display(transform, probe.radiance(vec3(texelDirection(size, x, y)))));
-  return preview;
+  return colorImage(size.width, size.height, [&](int x, int y) {
+    return display(transform, probe.radiance(vec3(texelDirection(size, x, y))));
+  });
 }
 
 }  // namespace chromeball

@@ -59,14 +59,11 @@ size_t multiplyRegion(Image& latLong, const dvec3& centre, double radius, const 
 }
 
 void multiply(Image& latLong, const Rgb& scale) {
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x) latLong.setRgb(x, y, latLong.rgb(x, y) * scale);
+  recolor(latLong, [&](const Rgb& c) { return c * scale; });
 }
 
 void clip(Image& latLong, float limit) {
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x)
-      latLong.setRgb(x, y, glm::min(latLong.rgb(x, y), Rgb(limit)));
+  recolor(latLong, [&](const Rgb& c) { return glm::min(c, Rgb(limit)); });
 }
 
 namespace {
@@ -196,9 +193,7 @@ RepairReport repair(Image& image, bool wrapX) {
                             meanOfNeighbours(image, x, y, wrapX, largest));
   for (const auto& [index, color] : filled)
     image.setRgb(int(index % image.width), int(index / image.width), color);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      image.setRgb(x, y, repairChannels(image.rgb(x, y), largest));
+  recolor(image, [&](const Rgb& c) { return repairChannels(c, largest); });
   return report;
 }
 

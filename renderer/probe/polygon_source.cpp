@@ -152,9 +152,8 @@ PolygonSource sourceOf(const Image& map, const SphericalPolygon& polygon) {
 PolygonExtraction extractPolygons(const Image& latLong,
                                   const std::vector<SphericalPolygon>& polygons) {
   PolygonExtraction result;
-  Image& rest = result.remainder = Image(latLong.width, latLong.height, 3);
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x) rest.setRgb(x, y, latLong.rgb(x, y));
+  Image& rest = result.remainder =
+      colorImage(latLong.width, latLong.height, [&](int x, int y) { return latLong.rgb(x, y); });
   for (const SphericalPolygon& polygon : polygons) {
     const std::vector<CoveredTexel> coverage = coverageOf(polygon, {rest.width, rest.height});
     const dvec3 fill = meanOfRim(rest, coverage);

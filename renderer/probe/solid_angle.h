@@ -13,6 +13,15 @@ namespace chromeball {
 // All texels sum to 4 pi.
 double texelSolidAngle(int row, int width, int height);
 
+// Calls visit(x, y, radiance, solid angle) for each texel of a lat-long map, row by row.
+template <class Visit>
+void forTexels(const Image& latLong, const Visit& visit) {
+  for (int y = 0; y < latLong.height; ++y) {
+    const double solidAngle = texelSolidAngle(y, latLong.width, latLong.height);
+    for (int x = 0; x < latLong.width; ++x) visit(x, y, latLong.rgb(x, y), solidAngle);
+  }
+}
+
 // d(solid angle) / d(u v) at a valid position of a mapping.
 double solidAngleJacobian(Mapping mapping, const dvec2& uv);
 

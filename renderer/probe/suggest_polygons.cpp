@@ -132,10 +132,9 @@ void divide(const Image& map, std::vector<PolygonCandidate>& candidates,
 std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count) {
   constexpr double kContrast = 4;
   double mean = 0;
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x)
-      mean += luminance(latLong.rgb(x, y)) * texelSolidAngle(y, latLong.width, latLong.height) /
-              (4 * kPiD);
+  forTexels(latLong, [&](int, int, const Rgb& c, double solidAngle) {
+    mean += luminance(c) * solidAngle / (4 * kPiD);
+  });
   struct Region {
     std::vector<Texel> texels;
     double flux;

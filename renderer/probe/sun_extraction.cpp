@@ -215,9 +215,8 @@ Sun discOf(const std::vector<Removed>& removed, int w, int h) {
 SunExtraction extractSuns(const Image& latLong) {
   const int w = latLong.width, h = latLong.height;
   SunExtraction result;
-  Image& remainder = result.remainder = Image(w, h, 3);
-  for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x) remainder.setRgb(x, y, latLong.rgb(x, y));
+  Image& remainder = result.remainder =
+      colorImage(w, h, [&](int x, int y) { return latLong.rgb(x, y); });
 
   const double mean = luminance(Rgb(meanRadiance(latLong)));
   const double sunRadius = 0.5 * kSunDiameter * kDegree;

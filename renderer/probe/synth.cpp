@@ -43,10 +43,7 @@ struct SoftBox {
 }  // namespace
 
 Image constantProbe(const ImageSize& size, const Rgb& radiance) {
-  Image image(size.width, size.height, 3);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) image.setRgb(x, y, radiance);
-  return image;
+  return colorImage(size.width, size.height, [&](int, int) { return radiance; });
 }
 
 Image oneHotProbe(const ImageSize& size, int x, int y, const Rgb& radiance) {

@@ -26,17 +26,6 @@ dvec3 pointInTexel(const Image& latLong, int x, int y, const dvec2& random) {
                         {(x + random.x) / latLong.width, std::acos(cosTheta) / kPiD});
 }
 
-template <class Visit>
-void forEachTexel(const Image& latLong, const Partition& partition, Visit visit) {
-  if (partition.regions == 0) return;
-  for (int y = 0; y < latLong.height; ++y) {
-    const double solidAngle = texelSolidAngle(y, latLong.width, latLong.height);
-    for (int x = 0; x < latLong.width; ++x)
-      visit(x, y, partition.label[size_t(y) * latLong.width + x],
-            dvec3(latLong.rgb(x, y)) * solidAngle);
-  }
-}
-
 constexpr int kStarts = 4;
 
 // `count` different lit cells, drawn without replacement with probability proportional to weight:
@@ -76,7 +65,13 @@ Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed)
   const Partition partition = kolligKellerRegions(latLong, count);
   std::vector<dvec3> power(partition.regions, dvec3(0));
   std::vector<double> weight(partition.regions), running(partition.regions);
-  forEachTexel(latLong, partition, [&](int, int, int region, const dvec3& texelPower) {
+  if (partition.regions == 0) return {};
+  const auto regionAt = [&](int x, int y) {
+    return partition.label[size_t(y) * latLong.width + x];
+  };
+  forTexels(latLong, [&](int x, int y, const Rgb& radiance, double solidAngle) {
+    const int region = regionAt(x, y);
+    const dvec3 texelPower = dvec3(radiance) * solidAngle;
     power[region] += texelPower;
     weight[region] += luminance(texelPower);
   });
@@ -84,7 +79,9 @@ Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed)
   // The light is in the texel at which the running sum of a region exceeds a random fraction of the
   // region's weight.
   Constellation lights(partition.regions);
-  forEachTexel(latLong, partition, [&](int x, int y, int region, const dvec3& texelPower) {
+  forTexels(latLong, [&](int x, int y, const Rgb& radiance, double solidAngle) {
+    const int region = regionAt(x, y);
+    const dvec3 texelPower = dvec3(radiance) * solidAngle;
     const auto random = [&](int i) { return toUnit(uint32_t(hash(seed, region, i))); };
     const double target = random(0) * weight[region], before = running[region];
     running[region] += luminance(texelPower);

@@ -65,10 +65,9 @@ double residual(double correlation) { return 1 - correlation * std::max(correlat
 double interpolationResidual(const Image& map) {
   const Rotation turn = Rotation::ofAngles({50, 40, 30});
   const Probe probe(map, turn);
-  Image turned(map.width, map.height, 3);
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x)
-      turned.setRgb(x, y, probe.radiance(vec3(texelDirection({map.width, map.height}, x, y))));
+  const Image turned = colorImage(map.width, map.height, [&](int x, int y) {
+    return probe.radiance(vec3(texelDirection({map.width, map.height}, x, y)));
+  });
   return residual(MapPair(map, turned).correlation(glm::conjugate(turn.quaternion())));
 }
 

@@ -57,10 +57,9 @@ MapPair::MapPair(const Image& f, const Image& g)
       powerF_(power(f)),
       powerG_(power(g)) {
   texels_.reserve(size_t(width_) * height_);
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x)
-      texels_.push_back({vec3(texelDirection({width_, height_}, x, y)), f.rgb(x, y),
-                         float(texelSolidAngle(y, width_, height_))});
+  chromeball::forTexels(f, [&](int x, int y, const Rgb& c, double solidAngle) {
+    texels_.push_back({vec3(texelDirection({width_, height_}, x, y)), c, float(solidAngle)});
+  });
 }
 
 template <class Visit>
@@ -182,12 +181,11 @@ float medianOf(const Image& map, int channel) {
   };
   std::vector<Texel> texels;
   double all = 0, lit = 0;
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x) {
-      texels.push_back({map.at(x, y)[channel], texelSolidAngle(y, map.width, map.height)});
-      all += texels.back().solidAngle;
-      if (texels.back().radiance > 0) lit += texels.back().solidAngle;
-    }
+  forTexels(map, [&](int, int, const Rgb& c, double solidAngle) {
+    texels.push_back({c[channel], solidAngle});
+    all += solidAngle;
+    if (c[channel] > 0) lit += solidAngle;
+  });
   std::ranges::sort(texels, {}, &Texel::radiance);
   double target = lit > 0.5 * all ? 0.5 * all : all - 0.5 * lit;
   for (const Texel& texel : texels)
@@ -247,13 +245,10 @@ LogMaps::LogMaps(const Image& latLong) : latLong_(latLong) {
 
 Image LogMaps::map(int height) const {
   Image map = resized(latLong_, height);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < map.width; ++x)
-      map.setRgb(x, y, glm::log(glm::max(map.rgb(x, y), 0.0f) / unit_ + kLogFloor));
+  recolor(map, [&](const Rgb& c) { return glm::log(glm::max(c, 0.0f) / unit_ + kLogFloor); });
   map = blurred(map);
   const Rgb mean(meanRadiance(map));
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < map.width; ++x) map.setRgb(x, y, map.rgb(x, y) - mean);
+  recolor(map, [&](const Rgb& c) { return c - mean; });
   return map;
 }
 

@@ -178,15 +178,12 @@ Image marked(const Image& latLong, const Image* clipped) {
   for (int y = 0; y < latLong.height; ++y)
     for (int x = 0; x < latLong.width; ++x)
       maximum = std::max(maximum, luminance(latLong.rgb(x, y)));
-  Image marks(latLong.width, latLong.height, 3);
-  for (int y = 0; y < marks.height; ++y)
-    for (int x = 0; x < marks.width; ++x) {
-      const bool isMarked = clipped
-                                ? *clipped->at(x, y) > 0.5f
-                                : maximum > 0 && luminance(latLong.rgb(x, y)) >= kPlateau * maximum;
-      marks.setRgb(x, y, Rgb(isMarked ? 1 : 0));
-    }
-  return marks;
+  return colorImage(latLong.width, latLong.height, [&](int x, int y) {
+    const bool isMarked = clipped
+                              ? *clipped->at(x, y) > 0.5f
+                              : maximum > 0 && luminance(latLong.rgb(x, y)) >= kPlateau * maximum;
+    return Rgb(isMarked ? 1 : 0);
+  });
 }
 
 struct Region {
@@ -214,9 +211,9 @@ std::optional<Image> loadClippedLayer(const std::filesystem::path& path, const L
   if (lowerExtension(path) != ".exr") return std::nullopt;
   const std::optional<Image> layer = layerOf(readImageFile(path), "clipped", path);
   if (!layer) return std::nullopt;
-  Image marks(layer->width, layer->height, 3);
-  for (int y = 0; y < marks.height; ++y)
-    for (int x = 0; x < marks.width; ++x) marks.setRgb(x, y, Rgb(*layer->at(x, y) > 0.5f ? 1 : 0));
+  const Image marks = colorImage(layer->width, layer->height, [&](int x, int y) {
+    return Rgb(*layer->at(x, y) > 0.5f ? 1 : 0);
+  });
   const Image map = convert(marks, probe.mapping, Mapping::LatLong,
                             {probe.latLong.width, probe.latLong.height}, probe.turned ? 180 : 0);
   Image clipped(map.width, map.height, 1);
