@@ -140,14 +140,10 @@ std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count) {
     double flux;
   };
   std::vector<Region> regions;
-  std::vector<bool> visited(size_t(latLong.width) * size_t(latLong.height));
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x) {
-      Region region{gatherRegion(latLong, {x, y}, kContrast * mean, visited), 0};
-      if (region.texels.empty()) continue;
-      centreOf(latLong, region.texels, region.flux);
-      regions.push_back(std::move(region));
-    }
+  for (std::vector<Texel>& texels : brightRegions(latLong, kContrast * mean)) {
+    Region& region = regions.emplace_back(Region{std::move(texels), 0});
+    centreOf(latLong, region.texels, region.flux);
+  }
   std::ranges::stable_sort(regions, std::greater(), &Region::flux);
   std::vector<PolygonCandidate> candidates;
   auto region = regions.begin();

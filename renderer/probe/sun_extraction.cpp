@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "probe/solid_angle.h"
 #include "probe/synth.h"
@@ -81,15 +82,9 @@ Core coreOf(const Image& image, const std::vector<Texel>& region) {
 // The cores in order of decreasing flux, without regions too wide for a sun.
 std::vector<Core> findCores(const Image& image, double threshold) {
   const double maxRadius = std::max(kMaxCore, largestTexelSide(image));
-  std::vector<bool> visited(size_t(image.width) * image.height);
   std::vector<Core> cores;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const std::vector<Texel> region = gatherRegion(image, {x, y}, threshold, visited);
-      if (region.empty()) continue;
-      const Core core = coreOf(image, region);
-      if (core.radius <= maxRadius) cores.push_back(core);
-    }
+  for (const std::vector<Texel>& region : brightRegions(image, threshold))
+    if (const Core core = coreOf(image, region); core.radius <= maxRadius) cores.push_back(core);
   std::sort(cores.begin(), cores.end(),
             [](const Core& a, const Core& b) { return a.flux > b.flux; });
   return cores;
@@ -241,8 +236,9 @@ SunExtraction extractSuns(const Image& latLong) {
   return result;
 }
 
-std::vector<Texel> gatherRegion(const Image& latLong, Texel start, double threshold,
-                                std::vector<bool>& visited) {
+std::vector<std::vector<Texel>> brightRegions(const Image& latLong, double threshold) {
+  std::vector<std::vector<Texel>> regions;
+  std::vector<bool> visited(size_t(latLong.width) * latLong.height);
   std::vector<Texel> region;
   const auto visit = [&](int x, int y) {
     x = (x + latLong.width) % latLong.width;
@@ -251,14 +247,17 @@ std::vector<Texel> gatherRegion(const Image& latLong, Texel start, double thresh
     visited[index] = true;
     region.push_back({x, y});
   };
-  visit(start.x, start.y);
-  for (size_t i = 0; i < region.size(); ++i) {
-    const Texel t = region[i];
-    for (int y = t.y - 1; y <= t.y + 1; ++y)
-      if (y >= 0 && y < latLong.height)
-        for (int dx = -1; dx <= 1; ++dx) visit(t.x + dx, y);
-  }
-  return region;
+  for (int startY = 0; startY < latLong.height; ++startY)
+    for (int startX = 0; startX < latLong.width; ++startX) {
+      visit(startX, startY);
+      for (size_t i = 0; i < region.size(); ++i) {
+        const Texel t = region[i];
+        for (int y = std::max(t.y - 1, 0); y <= std::min(t.y + 1, latLong.height - 1); ++y)
+          for (int dx = -1; dx <= 1; ++dx) visit(t.x + dx, y);
+      }
+      if (!region.empty()) regions.push_back(std::exchange(region, {}));
+    }
+  return regions;
 }
 
 }  // namespace chromeball

@@ -192,16 +192,12 @@ struct Region {
 };
 
 std::vector<Region> regionsOf(const Image& marks) {
-  std::vector<bool> visited(size_t(marks.width) * marks.height);
   std::vector<Region> regions;
-  for (int y = 0; y < marks.height; ++y)
-    for (int x = 0; x < marks.width; ++x) {
-      Region region{gatherRegion(marks, {x, y}, 0.5, visited)};
-      if (region.texels.empty()) continue;
-      for (const Texel t : region.texels)
-        region.solidAngle += texelSolidAngle(t.y, marks.width, marks.height);
-      regions.push_back(std::move(region));
-    }
+  for (std::vector<Texel>& texels : brightRegions(marks, 0.5)) {
+    Region& region = regions.emplace_back(Region{std::move(texels)});
+    for (const Texel t : region.texels)
+      region.solidAngle += texelSolidAngle(t.y, marks.width, marks.height);
+  }
   return regions;
 }
 
