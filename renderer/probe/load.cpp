@@ -100,20 +100,15 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
   probe.fileHeight = image.height;
   if (const auto given = parseMapping(mapping, image.width, image.height, mappingLocation)) {
     probe.mapping = *given;
-  } else if (stated) {
-    probe.mapping = *stated;
-    probe.detected = true;
-    probe.reason = "its `envmap` attribute defines it";
-  } else if (named) {
-    probe.mapping = *named;
-    probe.detected = true;
-    probe.reason = "the file names it";
   } else {
-    DetectedMapping detected = detectMapping(image);
+    const DetectedMapping detected =
+        stated  ? DetectedMapping{*stated, "its `envmap` attribute defines it", true}
+        : named ? DetectedMapping{*named, "the file names it", true}
+                : detectMapping(image);
     probe.mapping = detected.mapping;
     probe.detected = true;
     probe.certain = detected.certain;
-    probe.reason = std::move(detected.reason);
+    probe.reason = detected.reason;
   }
 
   const bool isLatLong = probe.mapping == Mapping::LatLong;

@@ -23,12 +23,7 @@ class Transmissions {
         entries_.push_back({*photograph.aperture, std::pow(*photograph.aperture, -2)});
   }
 
-  double of(double aperture) const {
-    return std::ranges::find_if(
-               entries_,
-               [&](const Entry& entry) { return isSameAperture(entry.aperture, aperture); })
-        ->transmission;
-  }
+  double of(double aperture) { return find(aperture)->transmission; }
 
   void apply(const ApertureRatio& ratio) {
     Entry *from = find(ratio.from), *to = find(ratio.to);
