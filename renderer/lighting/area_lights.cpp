@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/area_lights.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/hash.h"
-#include "math/vec.h"
 #include "probe/mapping.h"
 #include "probe/solid_angle.h"
 

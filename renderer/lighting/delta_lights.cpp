@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/delta_lights.h"
 
-#include <algorithm>
-
 #include "shading/bsdf.h"
 
 namespace chromeball {

@@ -3,7 +3,6 @@
 // a scene.
 #pragma once
 
-#include <cmath>
 #include <memory>
 #include <span>
 #include <string>

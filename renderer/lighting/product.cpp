@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/product.h"
 
-#include <algorithm>
-
 #include "base/parallel.h"
 
 namespace chromeball {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/strata.h"
 
-#include <algorithm>
-
 #include "base/hash.h"
 
 namespace chromeball {

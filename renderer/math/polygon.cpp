@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/polygon.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "base/error.h"

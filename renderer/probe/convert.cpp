@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/convert.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "probe/probe.h"
 #include "probe/solid_angle.h"
 
 namespace chromeball {

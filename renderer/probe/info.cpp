@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/info.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <tuple>
 
 #include "base/memory.h"
 #include "probe/solid_angle.h"
-#include "probe/sun_extraction.h"
 
 namespace chromeball {
 Plateau plateau(const Image& latLong) {

@@ -3,11 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <new>
-#include <vector>
 
 #include "base/error.h"
 #include "base/parallel.h"

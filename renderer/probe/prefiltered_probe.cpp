@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/prefiltered_probe.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "base/error.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/solid_angle.h"
 
-#include <cmath>
-
 namespace chromeball {
 namespace {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/sun_extraction.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "probe/solid_angle.h"

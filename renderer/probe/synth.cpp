@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/synth.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <vector>
 

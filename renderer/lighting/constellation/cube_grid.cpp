@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/cube_grid.h"
 
-#include <algorithm>
-
 #include "probe/mapping.h"
 
 namespace chromeball {

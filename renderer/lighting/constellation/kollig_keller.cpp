@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/kollig_keller.h"
 
-#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <optional>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/median_cut.h"
 
-#include <algorithm>
 #include <functional>
 #include <numeric>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/penrose.h"
 
-#include <algorithm>
 #include <queue>
 
 #include "base/hash.h"

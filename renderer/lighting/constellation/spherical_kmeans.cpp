@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/spherical_kmeans.h"
 
-#include <algorithm>
-
 #include "base/progress.h"
 
 namespace chromeball {

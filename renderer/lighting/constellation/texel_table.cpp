@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/texel_table.h"
 
-#include <algorithm>
 #include <limits>
 #include <queue>
 

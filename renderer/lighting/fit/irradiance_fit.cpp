@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/fit/irradiance_fit.h"
 
-#include <algorithm>
-
 #include "base/error.h"
 #include "base/parallel.h"
 #include "lighting/fit/light_descent.h"

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/align.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/error.h"
 #include "base/parallel.h"
 #include "math/cdf.h"

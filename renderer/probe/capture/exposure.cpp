@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/exposure.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 
 #include "base/error.h"

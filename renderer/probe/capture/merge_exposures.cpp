@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/merge_exposures.h"
 
-#include <algorithm>
-#include <cmath>
 #include <mutex>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/image.h"
 #include "image/io/exif.h"
 #include "image/tonemap.h"
 

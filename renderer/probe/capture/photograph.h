@@ -2,10 +2,7 @@
 // A photograph of a mirror ball, or through a fisheye lens.
 #pragma once
 
-#include <cmath>
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "base/message.h"
 #include "image/image.h"

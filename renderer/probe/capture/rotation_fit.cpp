@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/rotation_fit.h"
 
-#include <algorithm>
 #include <array>
-#include <vector>
 
 #include "base/parallel.h"
 #include "math/icosphere.h"

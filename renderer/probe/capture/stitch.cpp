@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/stitch.h"
 
-#include <algorithm>
 #include <map>
 
 #include "base/error.h"
 #include "math/dense_solvers.h"
-#include "probe/capture/tile.h"
 #include "probe/convert.h"
 #include "probe/solid_angle.h"
 

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/sun_from_ball.h"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "base/error.h"
 #include "base/file.h"
 #include "image/io/read_image.h"
 #include "probe/convert.h"
 #include "probe/irradiance.h"
 #include "probe/solid_angle.h"
-#include "probe/sun_extraction.h"
 
 namespace chromeball {
 namespace {

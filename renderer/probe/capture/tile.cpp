@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/tile.h"
 
-#include <algorithm>
-
 #include "base/parallel.h"
 #include "probe/mapping.h"
 #include "probe/solid_angle.h"
