@@ -50,10 +50,10 @@ const Warp kWarps[] = {
      [](const vec3&) { return double(squareToUniformSpherePdf()); }, uniformSphereToSquare},
     {"uniform hemisphere", squareToUniformHemisphere,
      [](const vec3& v) { return double(squareToUniformHemispherePdf(v)); },
-     uniformHemisphereToSquare},
+     [](const vec3& v) { return vec2(azimuthTurns(v), 1 - v.z); }},
     {"cosine hemisphere", squareToCosineHemisphere,
      [](const vec3& v) { return double(squareToCosineHemispherePdf(v)); },
-     cosineHemisphereToSquare}};
+     [](const vec3& v) { return vec2(azimuthTurns(v), v.x * v.x + v.y * v.y); }}};
 
 TEST(Warp, matchesItsPdfAndItsInverse) {
   for (const Warp& warp : kWarps) {
@@ -68,6 +68,10 @@ TEST(Warp, matchesItsPdfAndItsInverse) {
       ASSERT_NEAR(u.y, back.y, 2e-6);
     }
   }
+}
+
+vec2 triangleToSquare(vec2 b) {
+  return b.y > b.x ? vec2{2 * b.x, b.y + b.x} : vec2{b.x + b.y, 2 * b.y};
 }
 
 TEST(Warp, triangleIsUniformAndInvertible) {
