@@ -36,12 +36,9 @@ void mirrorAtHorizon(Image& latLong) {
 
 void mirrorLeftAndRight(Image& latLong) {
   for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; 2 * x < latLong.width - 1; ++x) {
-      const int opposite = latLong.width - 1 - x;
-      const Rgb left = latLong.rgb(x, y);
-      latLong.setRgb(x, y, latLong.rgb(opposite, y));
-      latLong.setRgb(opposite, y, left);
-    }
+    for (int x = 0; 2 * x < latLong.width - 1; ++x)
+      std::swap_ranges(latLong.at(x, y), latLong.at(x, y) + 3,
+                       latLong.at(latLong.width - 1 - x, y));
 }
 
 size_t multiplyRegion(Image& latLong, const dvec3& centre, double radius, const Rgb& gain) {
@@ -180,7 +177,6 @@ RepairReport repair(Image& image, bool wrapX) {
       if (report.total() == 0) report.firstX = x, report.firstY = y;
       ++(hasNan(c) ? report.nan : isFinite(c) ? report.negative : report.infinite);
     }
-  if (report.total() == 0) return report;
 
   // All NaN texels are filled from the original neighbours before any is replaced.
   std::vector<std::pair<size_t, Rgb>> filled;
