@@ -6,7 +6,7 @@
 
 #include "lighting/methods.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"
 #include "sphere_test.h"

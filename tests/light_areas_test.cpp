@@ -5,7 +5,7 @@
 #include "lighting/area_lights.h"
 #include "lighting/constellation/kollig_keller.h"
 #include "lighting/constellation/median_cut.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "sphere_test.h"
 
 namespace chromeball::light_areas_test {

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {

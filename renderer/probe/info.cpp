@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "base/memory.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 Plateau plateau(const Image& latLong) {

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "base/parallel.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 #include "probe/sun_extraction.h"
 
 namespace chromeball {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 #include "probe/sun_extraction.h"
 
 namespace chromeball {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 
 namespace chromeball {

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "probe/convert.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {

@@ -8,7 +8,6 @@
 #include "input_image.h"
 #include "messages.h"
 #include "probe/edit.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 

@@ -14,7 +14,7 @@
 #include "probe/convert.h"
 #include "probe/edit.h"
 #include "probe/load.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe_commands.h"
 #include "rotation_option.h"
 #include "write_probe.h"

@@ -9,7 +9,7 @@
 #include "messages.h"
 #include "probe/info.h"
 #include "probe/load.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe_commands.h"
 #include "rotation_option.h"
 

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "math/icosphere.h"
-#include "probe/solid_angle.h"
 #include "render_hints.h"
 #include "scene/surface.h"
 #include "trace/accel.h"

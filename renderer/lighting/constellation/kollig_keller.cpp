@@ -7,7 +7,6 @@
 
 #include "base/hash.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {

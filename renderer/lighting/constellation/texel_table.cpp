@@ -9,7 +9,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/fit/radiance_points.h"
 
-#include "probe/solid_angle.h"
-
 namespace chromeball {
 namespace {
 

@@ -5,7 +5,6 @@
 #include "image/image.h"
 #include "probe/convert.h"
 #include "probe/probe.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 

@@ -7,7 +7,6 @@
 #include "math/icosphere.h"
 #include "probe/convert.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {

@@ -6,7 +6,6 @@
 #include "image/io/read_image.h"
 #include "probe/convert.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {

@@ -8,7 +8,6 @@
 #include "math/cdf.h"
 #include "math/dense_solvers.h"
 #include "probe/capture/stitch.h"
-#include "probe/capture/tile.h"
 
 namespace chromeball {
 namespace {
