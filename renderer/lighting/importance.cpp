@@ -29,6 +29,36 @@ double meanLuminance(const Probe& probe) {
   return sum / weight;
 }
 
+constexpr int kWidth = LanesOf<Float8>::kCount;
+
+// Calls visit(first, count) for groups of lanes.
+template <class Visit>
+void forLanes(size_t size, const Visit& visit) {
+  for (size_t first = 0; first < size; first += kWidth)
+    visit(first, int(std::min<size_t>(kWidth, size - first)));
+}
+
+// Directions and their positions on the probe, in lanes.
+struct Located {
+  std::array<Lanes3<Float8>, LightSource::kMaxMany / kWidth> directions;
+  std::array<Probe::PositionOf<Float8>, LightSource::kMaxMany / kWidth> positions;
+
+  template <class Ray>
+  Located(const Probe& probe, std::span<const Ray> rays) {
+    assert(rays.size() <= LightSource::kMaxMany);
+    forLanes(rays.size(), [&](size_t first, int count) {
+      Lanes3<Float8>& d = directions[first / kWidth];
+      d = Lanes3<Float8>{};
+      for (int k = 0; k < count; ++k) {
+        const vec3& wi = rays[first + size_t(k)].wi;
+        d.x[k] = wi.x, d.y[k] = wi.y, d.z[k] = wi.z;
+      }
+      const auto& p = positions[first / kWidth] = probe.locate(d);
+      for (int k = 0; k < count; ++k) probe.prefetch(p.column[k], p.row[k]);
+    });
+  }
+};
+
 }  // namespace
 
 Importance::Importance(const Probe& probe, bool compensated)
@@ -90,19 +120,6 @@ LightSource::Escaped Importance::escapedAt(const vec3& wi, const Probe::Position
   return {seen.radiance, seen.weight * scale_};
 }
 
-namespace {
-
-constexpr int kWidth = LanesOf<Float8>::kCount;
-
-// Calls visit(first, count) for groups of lanes.
-template <class Visit>
-void forLanes(size_t size, const Visit& visit) {
-  for (size_t first = 0; first < size; first += kWidth)
-    visit(first, int(std::min<size_t>(kWidth, size - first)));
-}
-
-}  // namespace
-
 // Each loop prefetches what the next one reads.
 bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
                             std::span<DirectionSample> out) const {
@@ -141,31 +158,6 @@ bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
   });
   return true;
 }
-
-namespace {
-
-// Directions and their positions on the probe, in lanes.
-struct Located {
-  std::array<Lanes3<Float8>, LightSource::kMaxMany / kWidth> directions;
-  std::array<Probe::PositionOf<Float8>, LightSource::kMaxMany / kWidth> positions;
-
-  template <class Ray>
-  Located(const Probe& probe, std::span<const Ray> rays) {
-    assert(rays.size() <= LightSource::kMaxMany);
-    forLanes(rays.size(), [&](size_t first, int count) {
-      Lanes3<Float8>& d = directions[first / kWidth];
-      d = Lanes3<Float8>{};
-      for (int k = 0; k < count; ++k) {
-        const vec3& wi = rays[first + size_t(k)].wi;
-        d.x[k] = wi.x, d.y[k] = wi.y, d.z[k] = wi.z;
-      }
-      const auto& p = positions[first / kWidth] = probe.locate(d);
-      for (int k = 0; k < count; ++k) probe.prefetch(p.column[k], p.row[k]);
-    });
-  }
-};
-
-}  // namespace
 
 void Importance::escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const {
   const Located at(probe_, rays);

@@ -15,6 +15,82 @@ namespace {
 
 bool isBelowHorizon(int row, const Image& latLong) { return 2 * row >= latLong.height; }
 
+// The Fourier series of one channel of a row, about its azimuth: coefficients 0 to (width - 1) / 2.
+class RowSeries {
+ public:
+  RowSeries(const Image& image, int row, int channel)
+      : coefficients_(size_t(image.width + 1) / 2), turn_(size_t(image.width)) {
+    const auto width = size_t(image.width);
+    for (size_t i = 0; i < width; ++i) turn_[i] = std::polar(1.0, 2 * kPiD * double(i) / width);
+    parallelFor(size_t(0), coefficients_.size(), [&](size_t m) {
+      std::complex<double> sum = 0;
+      for (size_t x = 0; x < width; ++x)
+        sum += double(image.at(int(x), row)[channel]) * std::conj(turn_[m * x % width]);
+      coefficients_[m] = sum / double(width);
+    });
+    minimum_ = maximum_ = image.at(0, row)[channel];
+    for (int x = 1; x < image.width; ++x) {
+      minimum_ = std::min(minimum_, image.at(x, row)[channel]);
+      maximum_ = std::max(maximum_, image.at(x, row)[channel]);
+    }
+  }
+
+  // The harmonic function in the disc that this row bounds, at `radius` below 1 in the plane: each
+  // coefficient m times radius^m. It is within the range of the row, apart from the terms left out.
+  float inside(double radius, int column) const {
+    constexpr double kNegligible = 1e-5;
+    double sum = coefficients_[0].real(), power = radius;
+    for (size_t m = 1; m < coefficients_.size() && power > kNegligible; ++m, power *= radius)
+      sum += 2 * power * (coefficients_[m] * turn_[m * size_t(column) % turn_.size()]).real();
+    return std::clamp(float(sum), minimum_, maximum_);
+  }
+
+ private:
+  std::vector<std::complex<double>> coefficients_, turn_;
+  float minimum_ = 0, maximum_ = 0;
+};
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+bool hasNan(const Rgb& c) { return std::isnan(c.x) || std::isnan(c.y) || std::isnan(c.z); }
+
+// Replaces negative and infinite channels; keeps NaN.
+Rgb repairChannels(Rgb c, float largest) {
+  for (int i = 0; i < 3; ++i) {
+    if (c[i] < 0) c[i] = 0;
+    if (c[i] == kInfinity) c[i] = largest;
+  }
+  return c;
+}
+
+Rgb meanOfNeighbours(const Image& image, int x, int y, bool wrapX, float largest) {
+  glm::dvec3 sum(0);
+  int count = 0;
+  for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, image.height - 1); ++ny)
+    for (int dx = -1; dx <= 1; ++dx) {
+      int nx = x + dx;
+      if (wrapX) nx = (nx + image.width) % image.width;
+      if (nx < 0 || nx >= image.width) continue;
+      const Rgb neighbour = image.rgb(nx, ny);
+      if (hasNan(neighbour)) continue;
+      sum += glm::dvec3(repairChannels(neighbour, largest));
+      ++count;
+    }
+  return count > 0 ? Rgb(sum / double(count)) : Rgb(0);
+}
+
+bool isValid(const Image& image) {
+  std::atomic<bool> valid = true;
+  forRanges(size_t(image.height), size_t(image.width), [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end && valid; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const Rgb c = image.rgb(x, int(y));
+        if (!isFinite(c) || c.x < 0 || c.y < 0 || c.z < 0) valid = false;
+      }
+  });
+  return valid;
+}
+
 }  // namespace
 
 void replaceBelowHorizon(Image& latLong, const Rgb& radiance) {
@@ -61,45 +137,6 @@ void clip(Image& latLong, float limit) {
   recolor(latLong, [&](const Rgb& c) { return glm::min(c, Rgb(limit)); });
 }
 
-namespace {
-
-// The Fourier series of one channel of a row, about its azimuth: coefficients 0 to (width - 1) / 2.
-class RowSeries {
- public:
-  RowSeries(const Image& image, int row, int channel)
-      : coefficients_(size_t(image.width + 1) / 2), turn_(size_t(image.width)) {
-    const auto width = size_t(image.width);
-    for (size_t i = 0; i < width; ++i) turn_[i] = std::polar(1.0, 2 * kPiD * double(i) / width);
-    parallelFor(size_t(0), coefficients_.size(), [&](size_t m) {
-      std::complex<double> sum = 0;
-      for (size_t x = 0; x < width; ++x)
-        sum += double(image.at(int(x), row)[channel]) * std::conj(turn_[m * x % width]);
-      coefficients_[m] = sum / double(width);
-    });
-    minimum_ = maximum_ = image.at(0, row)[channel];
-    for (int x = 1; x < image.width; ++x) {
-      minimum_ = std::min(minimum_, image.at(x, row)[channel]);
-      maximum_ = std::max(maximum_, image.at(x, row)[channel]);
-    }
-  }
-
-  // The harmonic function in the disc that this row bounds, at `radius` below 1 in the plane: each
-  // coefficient m times radius^m. It is within the range of the row, apart from the terms left out.
-  float inside(double radius, int column) const {
-    constexpr double kNegligible = 1e-5;
-    double sum = coefficients_[0].real(), power = radius;
-    for (size_t m = 1; m < coefficients_.size() && power > kNegligible; ++m, power *= radius)
-      sum += 2 * power * (coefficients_[m] * turn_[m * size_t(column) % turn_.size()]).real();
-    return std::clamp(float(sum), minimum_, maximum_);
-  }
-
- private:
-  std::vector<std::complex<double>> coefficients_, turn_;
-  float minimum_ = 0, maximum_ = 0;
-};
-
-}  // namespace
-
 // Harmonic functions stay so under the stereographic projection from the zenith, which takes the
 // angle a from the nadir to the radius tan(a / 2).
 int fillNadir(Image& latLong, double radius) {
@@ -117,51 +154,6 @@ int fillNadir(Image& latLong, double radius) {
   }
   return latLong.height - first;
 }
-
-namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-bool hasNan(const Rgb& c) { return std::isnan(c.x) || std::isnan(c.y) || std::isnan(c.z); }
-
-// Replaces negative and infinite channels; keeps NaN.
-Rgb repairChannels(Rgb c, float largest) {
-  for (int i = 0; i < 3; ++i) {
-    if (c[i] < 0) c[i] = 0;
-    if (c[i] == kInfinity) c[i] = largest;
-  }
-  return c;
-}
-
-Rgb meanOfNeighbours(const Image& image, int x, int y, bool wrapX, float largest) {
-  glm::dvec3 sum(0);
-  int count = 0;
-  for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, image.height - 1); ++ny)
-    for (int dx = -1; dx <= 1; ++dx) {
-      int nx = x + dx;
-      if (wrapX) nx = (nx + image.width) % image.width;
-      if (nx < 0 || nx >= image.width) continue;
-      const Rgb neighbour = image.rgb(nx, ny);
-      if (hasNan(neighbour)) continue;
-      sum += glm::dvec3(repairChannels(neighbour, largest));
-      ++count;
-    }
-  return count > 0 ? Rgb(sum / double(count)) : Rgb(0);
-}
-
-bool isValid(const Image& image) {
-  std::atomic<bool> valid = true;
-  forRanges(size_t(image.height), size_t(image.width), [&](size_t begin, size_t end) {
-    for (size_t y = begin; y < end && valid; ++y)
-      for (int x = 0; x < image.width; ++x) {
-        const Rgb c = image.rgb(x, int(y));
-        if (!isFinite(c) || c.x < 0 || c.y < 0 || c.z < 0) valid = false;
-      }
-  });
-  return valid;
-}
-
-}  // namespace
 
 RepairReport repair(Image& image, bool wrapX) {
   RepairReport report;

@@ -29,6 +29,13 @@ dvec3 irradianceFrom(const Row& row, const PolarMoments& moments, const Horizon&
              dvec3(0));
 }
 
+// The azimuth a turned by b.
+Azimuth turned(const Azimuth& a, const Azimuth& b) {
+  double phi = a.phi + b.phi;
+  if (phi >= 2 * kPiD) phi -= 2 * kPiD;
+  return {phi, a.cos * b.cos - a.sin * b.sin, a.sin * b.cos + a.cos * b.sin};
+}
+
 }  // namespace
 
 std::vector<dvec3> exactIrradiance(const Image& latLong, std::span<const vec3> normals) {
@@ -91,17 +98,6 @@ Image irradianceMap(const Image& latLong, const ImageSize& size, const Rotation&
 Image shIrradianceMap(const Image& latLong, const ImageSize& size, const Rotation& rotation) {
   return imageOf(size, shIrradiance(latLong, texelDirections(size, rotation)));
 }
-
-namespace {
-
-// The azimuth a turned by b.
-Azimuth turned(const Azimuth& a, const Azimuth& b) {
-  double phi = a.phi + b.phi;
-  if (phi >= 2 * kPiD) phi -= 2 * kPiD;
-  return {phi, a.cos * b.cos - a.sin * b.sin, a.sin * b.cos + a.cos * b.sin};
-}
-
-}  // namespace
 
 Horizon::Horizon(const vec3& normal)
     : normal_(normal), azimuth_{0, 1, 0}, horizontal_(std::hypot(normal_.x, normal_.z)) {

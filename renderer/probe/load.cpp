@@ -122,6 +122,29 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
   return probe;
 }
 
+// Whether the image is black outside the mapping's valid area: at least 9 in 10 texels there are
+// below 1/1000 of the mean inside. (Debevec's probes have a copyright notice there.)
+bool isBlackOutside(const Image& image, Mapping mapping) {
+  double sumInside = 0;
+  size_t countInside = 0;
+  std::vector<float> outside;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const float brightness = maxComponent(image.rgb(x, y));
+      if (!std::isfinite(brightness)) continue;
+      if (showsDirection(mapping, {(x + 0.5) / image.width, (y + 0.5) / image.height})) {
+        sumInside += brightness;
+        ++countInside;
+      } else {
+        outside.push_back(brightness);
+      }
+    }
+  const double limit = 1e-3 * sumInside / double(std::max<size_t>(countInside, 1));
+  size_t black = 0;
+  for (const float brightness : outside) black += brightness <= limit;
+  return 10 * black >= 9 * outside.size();
+}
+
 }  // namespace
 
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping,
@@ -188,33 +211,6 @@ std::vector<std::string> lightWarnings(const LoadedProbe& probe,
                     path.string(), 100 * probe.fractionAtMaximum, probe.maximum)};
   return {};
 }
-
-namespace {
-
-// Whether the image is black outside the mapping's valid area: at least 9 in 10 texels there are
-// below 1/1000 of the mean inside. (Debevec's probes have a copyright notice there.)
-bool isBlackOutside(const Image& image, Mapping mapping) {
-  double sumInside = 0;
-  size_t countInside = 0;
-  std::vector<float> outside;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const float brightness = maxComponent(image.rgb(x, y));
-      if (!std::isfinite(brightness)) continue;
-      if (showsDirection(mapping, {(x + 0.5) / image.width, (y + 0.5) / image.height})) {
-        sumInside += brightness;
-        ++countInside;
-      } else {
-        outside.push_back(brightness);
-      }
-    }
-  const double limit = 1e-3 * sumInside / double(std::max<size_t>(countInside, 1));
-  size_t black = 0;
-  for (const float brightness : outside) black += brightness <= limit;
-  return 10 * black >= 9 * outside.size();
-}
-
-}  // namespace
 
 DetectedMapping detectMapping(const Image& image) {
   const int w = image.width, h = image.height;

@@ -115,6 +115,13 @@ dvec3 luminanceOf(const std::array<dvec3, 3>& channels) {
   return 0.2126 * channels[0] + 0.7152 * channels[1] + 0.0722 * channels[2];
 }
 
+// Converts between positions in the file and in the map, for a map that was turned by 180 degrees
+// on loading.
+glm::dvec2 turned(const glm::dvec2& uv, const LoadedProbe& probe) {
+  if (!probe.turned) return uv;
+  return {uv.x < 0.5 ? uv.x + 0.5 : uv.x - 0.5, uv.y};
+}
+
 }  // namespace
 
 dvec3 PolygonSource::direction() const {
@@ -160,17 +167,6 @@ PolygonExtraction extractPolygons(const Image& latLong,
   }
   return result;
 }
-
-namespace {
-
-// Converts between positions in the file and in the map, for a map that was turned by 180 degrees
-// on loading.
-glm::dvec2 turned(const glm::dvec2& uv, const LoadedProbe& probe) {
-  if (!probe.turned) return uv;
-  return {uv.x < 0.5 ? uv.x + 0.5 : uv.x - 0.5, uv.y};
-}
-
-}  // namespace
 
 SphericalPolygon polygonOf(const PolygonCorners& corners, const LoadedProbe& probe,
                            const std::string& location) {

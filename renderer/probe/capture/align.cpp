@@ -141,30 +141,6 @@ ProbeFit fitOf(const Candidate& candidate) {
   return {Rotation::ofQuaternion(candidate.rotation), candidate.correlation};
 }
 
-}  // namespace
-
-ProbeAlignment alignProbes(const Image& first, const Image& second, std::string_view firstName,
-                           std::string_view secondName) {
-  const LogMaps firstMaps(first), secondMaps(second);
-  std::vector<Candidate> candidates;
-  dvec3 errors(0);
-  for (const int height : heights(first, second)) {
-    const Image a = firstMaps.map(height), b = secondMaps.map(height);
-    if (candidates.empty()) checkVaries(a, firstName), checkVaries(b, secondName);
-    const MapPair maps(a, b);
-    if (candidates.empty()) candidates = search(maps);
-    const double least = std::max(interpolationResidual(a), interpolationResidual(b));
-    candidates = refined(maps, std::move(candidates), height, least);
-    errors = maps.standardErrors(candidates.front().rotation);
-  }
-  ProbeAlignment alignment{fitOf(candidates.front()), glm::degrees(errors), {}, {}};
-  for (size_t i = 1; i < candidates.size(); ++i) alignment.others.push_back(fitOf(candidates[i]));
-  alignment.axis = commonAxis(candidates);
-  return alignment;
-}
-
-namespace {
-
 constexpr int kScales = 6;  // shifts of 2^kScales - 1 pixels
 
 Image greenOf(const Image& image) {
@@ -246,6 +222,26 @@ Shift shiftBetween(const Image& a, const Image& b, double percentile, int scales
 }
 
 }  // namespace
+
+ProbeAlignment alignProbes(const Image& first, const Image& second, std::string_view firstName,
+                           std::string_view secondName) {
+  const LogMaps firstMaps(first), secondMaps(second);
+  std::vector<Candidate> candidates;
+  dvec3 errors(0);
+  for (const int height : heights(first, second)) {
+    const Image a = firstMaps.map(height), b = secondMaps.map(height);
+    if (candidates.empty()) checkVaries(a, firstName), checkVaries(b, secondName);
+    const MapPair maps(a, b);
+    if (candidates.empty()) candidates = search(maps);
+    const double least = std::max(interpolationResidual(a), interpolationResidual(b));
+    candidates = refined(maps, std::move(candidates), height, least);
+    errors = maps.standardErrors(candidates.front().rotation);
+  }
+  ProbeAlignment alignment{fitOf(candidates.front()), glm::degrees(errors), {}, {}};
+  for (size_t i = 1; i < candidates.size(); ++i) alignment.others.push_back(fitOf(candidates[i]));
+  alignment.axis = commonAxis(candidates);
+  return alignment;
+}
 
 bool Shift::isCertain() const {
   constexpr double kLeast = 0.005;

@@ -57,38 +57,6 @@ void count(Exposures exposures, int y, std::vector<MergedExposures::Use>& uses) 
     }
 }
 
-}  // namespace
-
-MergedExposures mergeExposures(std::span<const Exposure> exposures, const ResponseCurve& response) {
-  const int width = exposures.front().levels.width, height = exposures.front().levels.height;
-  MergedExposures merged{.radiance = Image(width, height, 3),
-                         .clipped = Image(width, height, 1),
-                         .uses = std::vector<MergedExposures::Use>(exposures.size())};
-  std::mutex mutex;  // of the counts
-  forRows(width, height, [&](int y) {
-    size_t clipped = 0, underexposed = 0;
-    for (int x = 0; x < width; ++x) {
-      bool isClipped = false, isUnderexposed = false;
-      for (int c = 0; c < 3; ++c) {
-        const Channel channel = mergedAt(exposures, response, x, y, c);
-        merged.radiance.at(x, y)[c] = float(channel.radiance);
-        isClipped |= channel.state == Channel::State::Clipped;
-        isUnderexposed |= channel.state == Channel::State::Underexposed;
-      }
-      *merged.clipped.at(x, y) = isClipped ? 1 : 0;
-      clipped += isClipped;
-      underexposed += isUnderexposed;
-    }
-    const std::lock_guard lock(mutex);
-    merged.clippedPixels += clipped;
-    merged.underexposedPixels += underexposed;
-    count(exposures, y, merged.uses);
-  });
-  return merged;
-}
-
-namespace {
-
 std::string kindOf(int bits) {
   return bits > 0 ? fmt::format("integers of {} bits", bits) : std::string("floats");
 }
@@ -128,7 +96,53 @@ void toSmallestSize(PhotographLevels& photographs) {
       image = levelsOfMeans(image, width, height, photographs.isSrgb());
 }
 
+void checkCount(const std::vector<double>& numbers, size_t files, const char* option) {
+  if (!numbers.empty() && numbers.size() != files)
+    throwInput("{}: has {} numbers for {} photographs; give one for each", option, numbers.size(),
+               files);
+}
+
+// A property that one photograph states and another does not makes their ratio unknown.
+void checkAllOrNone(const std::vector<std::string>& files,
+                    const std::vector<CameraSettings>& settings,
+                    std::optional<double> CameraSettings::*member, const char* name) {
+  for (size_t i = 1; i < files.size(); ++i)
+    if ((settings[i].*member).has_value() != (settings[0].*member).has_value()) {
+      const bool first = (settings[0].*member).has_value();
+      throwInput("{}: has no {} in its EXIF block, but {} has one; give the exposures",
+                 files[first ? i : 0], name, files[first ? 0 : i]);
+    }
+}
+
 }  // namespace
+
+MergedExposures mergeExposures(std::span<const Exposure> exposures, const ResponseCurve& response) {
+  const int width = exposures.front().levels.width, height = exposures.front().levels.height;
+  MergedExposures merged{.radiance = Image(width, height, 3),
+                         .clipped = Image(width, height, 1),
+                         .uses = std::vector<MergedExposures::Use>(exposures.size())};
+  std::mutex mutex;  // of the counts
+  forRows(width, height, [&](int y) {
+    size_t clipped = 0, underexposed = 0;
+    for (int x = 0; x < width; ++x) {
+      bool isClipped = false, isUnderexposed = false;
+      for (int c = 0; c < 3; ++c) {
+        const Channel channel = mergedAt(exposures, response, x, y, c);
+        merged.radiance.at(x, y)[c] = float(channel.radiance);
+        isClipped |= channel.state == Channel::State::Clipped;
+        isUnderexposed |= channel.state == Channel::State::Underexposed;
+      }
+      *merged.clipped.at(x, y) = isClipped ? 1 : 0;
+      clipped += isClipped;
+      underexposed += isUnderexposed;
+    }
+    const std::lock_guard lock(mutex);
+    merged.clippedPixels += clipped;
+    merged.underexposedPixels += underexposed;
+    count(exposures, y, merged.uses);
+  });
+  return merged;
+}
 
 PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
                             bool resizes) {
@@ -180,28 +194,6 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
   if (resizes) toSmallestSize(result);
   return result;
 }
-
-namespace {
-
-void checkCount(const std::vector<double>& numbers, size_t files, const char* option) {
-  if (!numbers.empty() && numbers.size() != files)
-    throwInput("{}: has {} numbers for {} photographs; give one for each", option, numbers.size(),
-               files);
-}
-
-// A property that one photograph states and another does not makes their ratio unknown.
-void checkAllOrNone(const std::vector<std::string>& files,
-                    const std::vector<CameraSettings>& settings,
-                    std::optional<double> CameraSettings::*member, const char* name) {
-  for (size_t i = 1; i < files.size(); ++i)
-    if ((settings[i].*member).has_value() != (settings[0].*member).has_value()) {
-      const bool first = (settings[0].*member).has_value();
-      throwInput("{}: has no {} in its EXIF block, but {} has one; give the exposures",
-                 files[first ? i : 0], name, files[first ? 0 : i]);
-    }
-}
-
-}  // namespace
 
 std::vector<CameraSettings> cameraSettings(const std::vector<std::string>& files,
                                            const std::vector<double>& times,

@@ -35,6 +35,77 @@ dquat rotated(const dquat& rotation, const dvec3& turn) {
   return angle > 0 ? glm::normalize(glm::angleAxis(angle, turn / angle) * rotation) : rotation;
 }
 
+constexpr int kMedianHeight = 32;
+constexpr float kLogFloor = 0.05f;
+
+Image resized(const Image& latLong, int height) {
+  return convert(latLong, Mapping::LatLong, Mapping::LatLong, {2 * height, height});
+}
+
+// The median of one channel over the sphere; over its lit part if that median is 0; 1 if all is
+// black.
+float medianOf(const Image& map, int channel) {
+  struct Texel {
+    float radiance;
+    double solidAngle;
+  };
+  std::vector<Texel> texels;
+  double all = 0, lit = 0;
+  forTexels(map, [&](int, int, const Rgb& c, double solidAngle) {
+    texels.push_back({c[channel], solidAngle});
+    all += solidAngle;
+    if (c[channel] > 0) lit += solidAngle;
+  });
+  std::ranges::sort(texels, {}, &Texel::radiance);
+  double target = lit > 0.5 * all ? 0.5 * all : all - 0.5 * lit;
+  for (const Texel& texel : texels)
+    if ((target -= texel.solidAngle) < 0) return texel.radiance > 0 ? texel.radiance : 1;
+  return 1;
+}
+
+// Weights of a Gaussian at -n .. n, of sum 1.
+std::vector<float> gaussian(double sigma, int largest) {
+  const int n = std::min(int(std::ceil(3 * sigma)), largest);
+  std::vector<float> weights;
+  double sum = 0;
+  for (int i = -n; i <= n; ++i) sum += std::exp(-0.5 * i * i / (sigma * sigma));
+  for (int i = -n; i <= n; ++i)
+    weights.push_back(float(std::exp(-0.5 * i * i / (sigma * sigma)) / sum));
+  return weights;
+}
+
+// Blurs along the rows by 1 / sin(theta) texels, then along the meridians, over the poles, by one.
+Image blurred(const Image& map) {
+  const int width = map.width, height = map.height;
+  Image along(width, height, 3), out(width, height, 3);
+  forRows(width, height, 64, [&](int y) {
+    const auto weights = gaussian(1 / std::sin(kPiD * (y + 0.5) / height), width / 2 - 1);
+    const int n = int(weights.size()) / 2;
+    for (int x = 0; x < width; ++x) {
+      Rgb sum(0);
+      for (int i = -n; i <= n; ++i)
+        sum += weights[size_t(i + n)] * map.rgb((x + i + width) % width, y);
+      along.setRgb(x, y, sum);
+    }
+  });
+  const auto weights = gaussian(1, height / 2);
+  const int n = int(weights.size()) / 2;
+  forRows(width, height, 8, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      Rgb sum(0);
+      for (int i = -n; i <= n; ++i) {
+        const int row = y + i;
+        const bool isBeyondPole = row < 0 || row >= height;
+        const int inside = row < 0 ? -1 - row : row >= height ? 2 * height - 1 - row : row;
+        sum +=
+            weights[size_t(i + n)] * along.rgb(isBeyondPole ? (x + width / 2) % width : x, inside);
+      }
+      out.setRgb(x, y, sum);
+    }
+  });
+  return out;
+}
+
 }  // namespace
 
 // Integrals over the sphere, summed over channels. J: the derivatives of g.
@@ -159,81 +230,6 @@ dvec3 MapPair::standardErrors(const dquat& rotation) const {
   const dmat3 covariance = inverse * scatter * inverse;
   return {std::sqrt(covariance[0][0]), std::sqrt(covariance[1][1]), std::sqrt(covariance[2][2])};
 }
-
-namespace {
-
-constexpr int kMedianHeight = 32;
-constexpr float kLogFloor = 0.05f;
-
-Image resized(const Image& latLong, int height) {
-  return convert(latLong, Mapping::LatLong, Mapping::LatLong, {2 * height, height});
-}
-
-// The median of one channel over the sphere; over its lit part if that median is 0; 1 if all is
-// black.
-float medianOf(const Image& map, int channel) {
-  struct Texel {
-    float radiance;
-    double solidAngle;
-  };
-  std::vector<Texel> texels;
-  double all = 0, lit = 0;
-  forTexels(map, [&](int, int, const Rgb& c, double solidAngle) {
-    texels.push_back({c[channel], solidAngle});
-    all += solidAngle;
-    if (c[channel] > 0) lit += solidAngle;
-  });
-  std::ranges::sort(texels, {}, &Texel::radiance);
-  double target = lit > 0.5 * all ? 0.5 * all : all - 0.5 * lit;
-  for (const Texel& texel : texels)
-    if ((target -= texel.solidAngle) < 0) return texel.radiance > 0 ? texel.radiance : 1;
-  return 1;
-}
-
-// Weights of a Gaussian at -n .. n, of sum 1.
-std::vector<float> gaussian(double sigma, int largest) {
-  const int n = std::min(int(std::ceil(3 * sigma)), largest);
-  std::vector<float> weights;
-  double sum = 0;
-  for (int i = -n; i <= n; ++i) sum += std::exp(-0.5 * i * i / (sigma * sigma));
-  for (int i = -n; i <= n; ++i)
-    weights.push_back(float(std::exp(-0.5 * i * i / (sigma * sigma)) / sum));
-  return weights;
-}
-
-// Blurs along the rows by 1 / sin(theta) texels, then along the meridians, over the poles, by one.
-Image blurred(const Image& map) {
-  const int width = map.width, height = map.height;
-  Image along(width, height, 3), out(width, height, 3);
-  forRows(width, height, 64, [&](int y) {
-    const auto weights = gaussian(1 / std::sin(kPiD * (y + 0.5) / height), width / 2 - 1);
-    const int n = int(weights.size()) / 2;
-    for (int x = 0; x < width; ++x) {
-      Rgb sum(0);
-      for (int i = -n; i <= n; ++i)
-        sum += weights[size_t(i + n)] * map.rgb((x + i + width) % width, y);
-      along.setRgb(x, y, sum);
-    }
-  });
-  const auto weights = gaussian(1, height / 2);
-  const int n = int(weights.size()) / 2;
-  forRows(width, height, 8, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      Rgb sum(0);
-      for (int i = -n; i <= n; ++i) {
-        const int row = y + i;
-        const bool isBeyondPole = row < 0 || row >= height;
-        const int inside = row < 0 ? -1 - row : row >= height ? 2 * height - 1 - row : row;
-        sum +=
-            weights[size_t(i + n)] * along.rgb(isBeyondPole ? (x + width / 2) % width : x, inside);
-      }
-      out.setRgb(x, y, sum);
-    }
-  });
-  return out;
-}
-
-}  // namespace
 
 LogMaps::LogMaps(const Image& latLong) : latLong_(latLong) {
   const Image small = resized(latLong, kMedianHeight);
