@@ -21,20 +21,29 @@ struct NamedProjection {
   FisheyeProjection projection;
   double largestFieldOfView;                                // degrees
   double (*radius)(double angle), (*angle)(double radius);  // radius at a focal length of 1
+  double (*jacobian)(double half, double angle);  // sin(t) (dt/dr) / r, with r = 1 at half
 };
+
+double squared(double x) { return x * x; }
 
 // In the order of FisheyeProjection.
 constexpr std::array<NamedProjection, 4> kProjections{
     {{"equidistant", FisheyeProjection::Equidistant, 360,  //
-      [](double t) { return t; }, [](double r) { return r; }},
+      [](double t) { return t; }, [](double r) { return r; },
+      [](double h, double t) { return h * h * (t > 0 ? std::sin(t) / t : 1); }},
      {"equisolid", FisheyeProjection::Equisolid, 360,  //
-      [](double t) { return std::sin(0.5 * t); }, [](double r) { return 2 * std::asin(r); }},
+      [](double t) { return std::sin(0.5 * t); }, [](double r) { return 2 * std::asin(r); },
+      [](double h, double) { return 4 * std::sin(0.5 * h) * std::sin(0.5 * h); }},
      {"orthographic", FisheyeProjection::Orthographic, 180,
       // The sine falls again behind the lens: its reflection at 1 goes on rising.
       [](double t) { return t <= 0.5 * kPiD ? std::sin(t) : 2 - std::sin(t); },
-      [](double r) { return std::asin(r); }},
+      [](double r) { return std::asin(r); },
+      [](double h, double t) { return squared(std::sin(h)) / std::cos(t); }},
      {"stereographic", FisheyeProjection::Stereographic, 300,  //
-      [](double t) { return std::tan(0.5 * t); }, [](double r) { return 2 * std::atan(r); }}}};
+      [](double t) { return std::tan(0.5 * t); }, [](double r) { return 2 * std::atan(r); },
+      [](double h, double t) {
+        return squared(2 * std::tan(0.5 * h)) * std::pow(std::cos(0.5 * t), 4);
+      }}}};
 
 const NamedProjection& projectionOf(FisheyeProjection projection) {
   return kProjections[size_t(projection)];
@@ -67,26 +76,8 @@ double Fisheye::angle(double r) const {
   return projectionOf(projection).angle(projectionOf(projection).radius(halfAngle()) * r);
 }
 
-// sin(t) (dt/dr) / r.
 double Fisheye::solidAngleJacobian(double r) const {
-  const double h = halfAngle(), t = angle(r);
-  switch (projection) {
-    case FisheyeProjection::Equidistant:
-      return h * h * (t > 0 ? std::sin(t) / t : 1);
-    case FisheyeProjection::Equisolid: {
-      const double sine = std::sin(0.5 * h);
-      return 4 * sine * sine;
-    }
-    case FisheyeProjection::Orthographic: {
-      const double sine = std::sin(h);
-      return sine * sine / std::cos(t);
-    }
-    case FisheyeProjection::Stereographic: {
-      const double tangent = 2 * std::tan(0.5 * h), cosine = std::cos(0.5 * t);
-      return tangent * tangent * std::pow(cosine, 4);
-    }
-  }
-  return 0;
+  return projectionOf(projection).jacobian(halfAngle(), angle(r));
 }
 
 std::string fisheyeName(const Fisheye& lens) {
