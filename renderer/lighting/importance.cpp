@@ -95,10 +95,6 @@ DirectionSample Importance::sampleDirection(double u, double v) const {
   if (!(total_ > 0)) return {vec3(0, 1, 0), Rgb(0), 0};
   const int row = rows_.sample(0, v);
   const int column = columns_.sample(row, u);
-  return sampleOf(column, row, u, v);
-}
-
-DirectionSample Importance::sampleOf(int column, int row, double u, double v) const {
   const LuminanceField::Point point = field_.sample(column, row, float(u), float(v));
   const float pdf = point.weight * scale_;
   return {point.direction, point.radiance / pdf, pdf};
@@ -112,11 +108,7 @@ void Importance::sample(const LightPoint&, const PixelSampler& sampler,
 }
 
 LightSource::Escaped Importance::escaped(const LightPoint&, const vec3& wi) const {
-  return escapedAt(wi, probe_.locate(wi));
-}
-
-LightSource::Escaped Importance::escapedAt(const vec3& wi, const Probe::Position& position) const {
-  const LuminanceField::Point seen = field_.at(wi, position);
+  const LuminanceField::Point seen = field_.at(wi, probe_.locate(wi));
   return {seen.radiance, seen.weight * scale_};
 }
 

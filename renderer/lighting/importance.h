@@ -42,8 +42,6 @@ class Importance : public ProbeLight {
 
  private:
   double tabulate();
-  DirectionSample sampleOf(int column, int row, double u, double v) const;
-  Escaped escapedAt(const vec3& wi, const Probe::Position& position) const;
 
   LuminanceField field_;
   CdfRows rows_, columns_;
