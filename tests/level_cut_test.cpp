@@ -106,7 +106,7 @@ TEST(LevelCut, EachLevelDoublesTheRegions) {
     const RegionTable table(map, measure);
     const double whole = table.moment({0, 0, 128, 64}).w;
     for (int levels = 1; levels <= 6; ++levels) {
-      const auto regions = levelCutRegions(table, {.levels = levels, .count = 4096});
+      const auto regions = levelCutRegions(table, levels, 4096);
       ASSERT_EQ(int(regions.size()), 1 << levels);
       for (const Region& r : regions)
         EXPECT_NEAR(table.moment(r).w / whole * (1 << levels), 1, 0.2);
@@ -120,8 +120,7 @@ TEST(LevelCut, MeasuresDifferNearThePoles) {
   Image map = constantProbe({64, 32}, Rgb(1));
   const auto rows = [&](RegionMeasure measure) {
     std::vector<int> tops;
-    for (const Region& r : levelCutRegions(RegionTable(map, measure), {.levels = 4, .count = 64}))
-      tops.push_back(r.y0);
+    for (const Region& r : levelCutRegions(RegionTable(map, measure), 4, 64)) tops.push_back(r.y0);
     std::sort(tops.begin(), tops.end());
     tops.erase(std::unique(tops.begin(), tops.end()), tops.end());
     return tops;

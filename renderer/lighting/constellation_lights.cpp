@@ -31,10 +31,9 @@ Lights cutLights(CountRange counts, RegionMeasure measure, LightPlace place, con
 }
 
 std::vector<Region> levelCutOf(const RegionTable& table, const LightRequest& request) {
-  LevelCut cut;
-  if (request.levels) cut.levels = *request.levels, cut.count = std::numeric_limits<int>::max();
-  if (request.count) cut.count = *request.count;
-  return levelCutRegions(table, cut);
+  constexpr int kAll = std::numeric_limits<int>::max(), kUsualCount = 64;
+  return levelCutRegions(table, request.levels.value_or(kAll),
+                         request.count.value_or(request.levels ? kAll : kUsualCount));
 }
 
 Lights centreLights(CountRange counts, RegionMeasure measure) {

@@ -78,15 +78,15 @@ std::vector<Region> medianCutRegions(const RegionTable& table, int count) {
       [&](const Region& r) { return cutInHalf(table, r); });
 }
 
-std::vector<Region> levelCutRegions(const RegionTable& table, const LevelCut& cut) {
+std::vector<Region> levelCutRegions(const RegionTable& table, int levels, int count) {
   const Region whole{0, 0, table.texels().width(), table.texels().height()};
   if (table.litCells(whole) == 0) return {};
   std::vector<Region> regions{whole};
   bool cuttable = true;
-  for (int level = 0; level < cut.levels && cuttable; ++level) {
+  for (int level = 0; level < levels && cuttable; ++level) {
     cuttable = false;
     for (const int index : byEnergy(table, regions)) {
-      if (int(regions.size()) >= cut.count) return regions;
+      if (int(regions.size()) >= count) return regions;
       if (table.litCells(regions[index]) < 2) continue;
       const auto [first, second] = cutInHalf(table, regions[index]);
       cuttable = true;

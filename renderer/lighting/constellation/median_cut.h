@@ -18,17 +18,11 @@ std::vector<Region> medianCutRegions(const RegionTable& table, int count);
 
 // `median-cut-centre`, `median-cut-flat`, and median cut by levels: the variants that the HDRI book
 // (section 9.6.2) and Madsen and Laursen (2007, section 4.1) describe.
-
-// All regions are cut (median_cut.h) before any of their parts: after K levels there are 2^K. Black
-// margins stay in their regions, which matters for centres.
-struct LevelCut {
-  int levels = std::numeric_limits<int>::max();  // maximum
-  int count = 64;                                // of regions, maximum; on the last level those
-                                                 // with the highest energy are cut
-};
-
-// A part without light is dropped; a region of a single lit cell is not cut.
-std::vector<Region> levelCutRegions(const RegionTable& table, const LevelCut& cut);
+// All regions are cut (median_cut.h) before any of their parts: after K levels there are 2^K, but
+// at most `count`: on the last level those with the highest energy are cut. Black margins stay in
+// their regions, which matters for centres. A part without light is dropped; a region of a single
+// lit cell is not cut.
+std::vector<Region> levelCutRegions(const RegionTable& table, int levels, int count);
 
 // `variance-cut` (Viriyothai and Debevec, "Variance Minimization Light Probe Sampling", SIGGRAPH
 // posters 2009): regions of small variance.
