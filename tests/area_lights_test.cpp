@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "lighting/constellation/median_cut.h"
+#include "lighting/methods.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"
 #include "sphere_test.h"
@@ -178,7 +178,8 @@ TEST(AreaLights, GiveTheIrradianceOfThePiecewiseConstantMap) {
 TEST(AreaLights, DiscsGiveTheirIrradianceInClosedForm) {
   const Image sky = sunOverASky();
   const Probe probe(sky, 70);
-  const RegionAreas regions(sky, medianCutPartition(sky, 24), 70);
+  const RegionAreas regions(
+      sky, lightMethod("median-cut", "").lights.regions(sky, {.count = 24}).partition, 70);
   const auto lighting = make("median-cut-disc:24", probe);
   const vec3 normal = glm::normalize(vec3(0.2f, 0.9f, -0.3f));
   double expected = 0;

@@ -10,7 +10,7 @@
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
 #include "probe/load.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 #include "shared_data.h"
 

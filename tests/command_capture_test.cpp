@@ -13,7 +13,7 @@
 #include "lighting/export/light_list.h"
 #include "probe/edit.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "shared_data.h"

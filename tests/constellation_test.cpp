@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "constellation_maps.h"
 #include "lighting/constellation/texel_table.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 
 namespace chromeball::constellation_test {

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 
 namespace chromeball::convolve_test {

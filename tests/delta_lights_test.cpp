@@ -12,7 +12,7 @@
 #include "lighting/methods.h"
 #include "measure/statistics.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 #include "shading/bsdf.h"
 #include "strategy_samples.h"

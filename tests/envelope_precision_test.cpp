@@ -9,7 +9,7 @@
 
 #include "envelope.h"
 #include "math/cdf.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 #include "scene/surface.h"
 

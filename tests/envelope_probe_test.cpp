@@ -12,7 +12,7 @@
 #include "probe/info.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 
 namespace chromeball::envelope_probe_test {

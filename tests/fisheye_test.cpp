@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "probe/convert.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 #include "probe/synth.h"
 
 namespace chromeball::fisheye_test {

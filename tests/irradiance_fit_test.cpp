@@ -15,7 +15,7 @@
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 #include "shared_data.h"
 

@@ -13,7 +13,7 @@
 #include "lighting/fit/light_descent.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 
 namespace chromeball::irradiance_spheres_test {

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "front/scene_file.h"
-#include "lighting/punctual.h"
+#include "lighting/scene_sources.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "small_model.h"

@@ -12,7 +12,7 @@
 #include "lighting/fit/light_descent.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 
 namespace chromeball::level_cut_test {
@@ -21,22 +21,18 @@ namespace {
 // Mean and maximum error after 1 to 7 levels, in percent.
 using Errors = std::array<LightError, 7>;
 
-void expectErrors(const Image& map, const LevelCut& variant, const Errors& expected,
-                  double tolerance) {
+void expectErrors(const Image& map, const char* method, const Errors& expected, double tolerance) {
   const std::vector<vec3> normals = icosphereNormals(4);
   const std::vector<dvec3> exact = exactIrradiance(map, normals);
   for (int levels = 1; levels <= 7; ++levels) {
-    LevelCut cut = variant;
-    cut.levels = levels;
-    cut.count = 4096;
-    const LightError error = lightError(irradianceOf(levelCut(map, cut), Rgb(0), normals), exact);
+    const Constellation lights = makeLights(method, map, {.levels = levels}).lights;
+    const LightError error = lightError(irradianceOf(lights, Rgb(0), normals), exact);
     EXPECT_NEAR(error.mean / expected[levels - 1].mean, 1, tolerance) << levels << " levels";
     EXPECT_NEAR(error.max / expected[levels - 1].max, 1, tolerance) << levels << " levels";
   }
 }
 
-constexpr LevelCut kCentre{.place = LightPlace::Centre};
-constexpr LevelCut kFlat{.measure = RegionMeasure::MapArea, .place = LightPlace::Centre};
+constexpr const char *kCentre = "median-cut-centre", *kFlat = "median-cut-flat";
 
 // The numbers come from an independent implementation.
 TEST(SlowLevelCut, CentresInGalileosTombErrAsPublished) {
@@ -93,7 +89,7 @@ TEST(SlowLevelCut, CentresAndCentroidsUnderASkyWithoutGround) {
                  {1.59, 6.11},
                  {0.661, 2.59}}},
                0.05);
-  expectErrors(*map, {},
+  expectErrors(*map, "median-cut",
                {{{9.05, 26.3},
                  {5.63, 15.7},
                  {1.93, 5.39},
@@ -110,7 +106,7 @@ TEST(LevelCut, EachLevelDoublesTheRegions) {
     const RegionTable table(map, measure);
     const double whole = table.moment({0, 0, 128, 64}).w;
     for (int levels = 1; levels <= 6; ++levels) {
-      const auto regions = levelCutRegions(table, {.levels = levels, .count = 4096});
+      const auto regions = levelCutRegions(table, levels, 4096);
       ASSERT_EQ(int(regions.size()), 1 << levels);
       for (const Region& r : regions)
         EXPECT_NEAR(table.moment(r).w / whole * (1 << levels), 1, 0.2);
@@ -124,8 +120,7 @@ TEST(LevelCut, MeasuresDifferNearThePoles) {
   Image map = constantProbe({64, 32}, Rgb(1));
   const auto rows = [&](RegionMeasure measure) {
     std::vector<int> tops;
-    for (const Region& r : levelCutRegions(RegionTable(map, measure), {.levels = 4, .count = 64}))
-      tops.push_back(r.y0);
+    for (const Region& r : levelCutRegions(RegionTable(map, measure), 4, 64)) tops.push_back(r.y0);
     std::sort(tops.begin(), tops.end());
     tops.erase(std::unique(tops.begin(), tops.end()), tops.end());
     return tops;
@@ -141,8 +136,8 @@ TEST(LevelCut, BlackMarginsMoveCentresButNotCentroids) {
   Image map(64, 32, 3);
   map.setRgb(10, 4, Rgb(1));
   map.setRgb(50, 4, Rgb(1));
-  const Constellation centres = levelCut(map, {.place = LightPlace::Centre, .levels = 1});
-  const Constellation centroids = levelCut(map, {.levels = 1});
+  const Constellation centres = makeLights(kCentre, map, {.levels = 1}).lights;
+  const Constellation centroids = makeLights("median-cut", map, {.levels = 1}).lights;
   ASSERT_EQ(centres.size(), 2u);
   ASSERT_EQ(centroids.size(), 2u);
   for (int i = 0; i < 2; ++i) {

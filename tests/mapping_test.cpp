@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "probe/load.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball::mapping_test {
 namespace {

@@ -13,7 +13,7 @@
 #include "probe/info.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "shared_data.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Punctual lights: closed forms of their falloff and of the radiance of a plane.
-#include "lighting/punctual.h"
+#include "lighting/scene_sources.h"
 
 #include <gtest/gtest.h>
 

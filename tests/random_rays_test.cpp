@@ -16,7 +16,6 @@
 #include "math/warp.h"
 #include "probe/convert.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "shared_data.h"

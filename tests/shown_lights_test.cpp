@@ -9,7 +9,6 @@
 #include "floor_in_surroundings.h"
 #include "image/io/write_image.h"
 #include "lighting/area_lights.h"
-#include "lighting/constellation/median_cut.h"
 #include "lighting/methods.h"
 #include "probe/synth.h"
 #include "run_command.h"
@@ -50,7 +49,8 @@ TEST(ShownLights, AreaLightsAreDiscsOfTheirSolidAngle) {
   Image map = constantProbe({64, 32}, Rgb(0.01f));
   map.setRgb(20, 9, Rgb(2000, 1000, 500));
   const Probe probe(map, kRotation);
-  const RegionAreas areas(map, medianCutPartition(map, 32), kRotation);
+  const RegionAreas areas(
+      map, lightMethod("median-cut", "").lights.regions(map, {.count = 32}).partition, kRotation);
   for (const char* name : {"median-cut-area:32", "median-cut-disc:32"}) {
     const auto lighting = shown(name, probe);
     double energy = 0, seen = 0;

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 
 namespace chromeball::sky_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "probe/load.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 #include "shared_data.h"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lighting/importance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 #include "sphere_test.h"
 

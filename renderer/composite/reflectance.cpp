@@ -220,11 +220,9 @@ ReflectanceSolution solveFlatReflectance(const ReflectanceProblem& problem,
   const VisibleSurfaces visible = findVisibleSurfaces(problem, settings, stop);
   initialise(visible, projection);
   const Image& black = visible.emission;
-  Image white(settings.width, settings.height, 3);
-  for (int y = 0; y < white.height; ++y)
-    for (int x = 0; x < white.width; ++x)
-      white.setRgb(
-          x, y, black.rgb(x, y) + glm::mix(irradiance * kInvPi, Rgb(1), *visible.unlit.at(x, y)));
+  const Image white = colorImage(settings.width, settings.height, [&](int x, int y) {
+    return black.rgb(x, y) + glm::mix(irradiance * kInvPi, Rgb(1), *visible.unlit.at(x, y));
+  });
   return solveStep(problem.plate, black, white, visible, projection);
 }
 

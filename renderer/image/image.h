@@ -33,6 +33,22 @@ struct Image {
   }
 };
 
+// The image of three channels with the colour of(x, y) at each texel.
+template <class Color>
+Image colorImage(int width, int height, const Color& of) {
+  Image image(width, height, 3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) image.setRgb(x, y, of(x, y));
+  return image;
+}
+
+// Replaces the colour c of each texel by of(c).
+template <class Color>
+void recolor(Image& image, const Color& of) {
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) image.setRgb(x, y, of(image.rgb(x, y)));
+}
+
 // Images of another size.
 
 // Resampled with a box filter: each pixel is the mean of the area that it covers. An image of the

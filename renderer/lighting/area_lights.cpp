@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/area_lights.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/hash.h"
-#include "math/vec.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {
@@ -180,7 +175,7 @@ LightAreas::Sample RegionAreas::sample(size_t light, double u, double v) const {
 }
 
 AreaLights::AreaLights(const Probe& probe, std::unique_ptr<const LightAreas> areas)
-    : probe_(probe),
+    : ProbeLight(probe),
       areas_(std::move(areas)),
       choice_(1, std::max(1, int(areas_->lights().size()))) {
   std::vector<double> powers;

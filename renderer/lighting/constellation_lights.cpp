@@ -13,113 +13,124 @@ namespace {
 
 using Lights = LightingMethod::Lights;
 
-// Deterministic methods.
-Lights constellation(CountRange counts, Constellation (*make)(const Image& latLong, int count),
-                     Partition (*regions)(const Image& latLong, int count)) {
+// A light for each rectangle of cut(table, request).
+template <class Cut>
+Lights cutLights(CountRange counts, RegionMeasure measure, LightPlace place, const Cut& cut) {
   return {.make =
-              [make](const Image& latLong, const LightRequest& request) {
-                return MadeLights{make(latLong, *request.count)};
+              [=](const Image& latLong, const LightRequest& request) {
+                const RegionTable table(latLong, measure);
+                return MadeLights{table.lights(cut(table, request), place)};
               },
           .counts = counts,
           .keepsEnergy = true,
           .regions =
-              [regions](const Image& latLong, const LightRequest& request) {
-                return LightRegions{regions(latLong, *request.count), {}};
+              [=](const Image& latLong, const LightRequest& request) {
+                const RegionTable table(latLong, measure);
+                return LightRegions{table.partition(latLong, cut(table, request)), {}};
               }};
 }
 
-// Stochastic methods.
-Lights constellation(CountRange counts,
-                     Constellation (*make)(const Image& latLong, int count, uint64_t seed),
-                     LightRegions (*regions)(const Image& latLong, const LightRequest& request)) {
-  return {.make =
-              [make](const Image& latLong, const LightRequest& request) {
-                return MadeLights{make(latLong, *request.count, request.seed)};
-              },
-          .counts = counts,
-          .isStochastic = true,
-          .keepsEnergy = true,
-          .regions = regions};
+std::vector<Region> levelCutOf(const RegionTable& table, const LightRequest& request) {
+  constexpr int kAll = std::numeric_limits<int>::max(), kUsualCount = 64;
+  return levelCutRegions(table, request.levels.value_or(kAll),
+                         request.count.value_or(request.levels ? kAll : kUsualCount));
 }
 
-LightRegions lightGenClusters(const Image& latLong, const LightRequest& request) {
-  return {lightGenRegions(latLong, *request.count, request.seed), {}};
+Lights centreLights(CountRange counts, RegionMeasure measure) {
+  Lights lights = cutLights(counts, measure, LightPlace::Centre, levelCutOf);
+  lights.takesLevels = true;
+  return lights;
 }
 
-LightRegions kolligKellerClusters(const Image& latLong, const LightRequest& request) {
-  return {kolligKellerRegions(latLong, *request.count), {}};
-}
-
-LightRegions penroseRhombs(const Image& latLong, const LightRequest& request) {
-  return {{}, penroseTiling(latLong, *request.count, request.seed)};
-}
-
-LevelCut levelCutOf(RegionMeasure measure, LightPlace place, const LightRequest& request) {
-  LevelCut cut{.measure = measure, .place = place};
-  if (request.levels) cut.levels = *request.levels, cut.count = std::numeric_limits<int>::max();
-  if (request.count) cut.count = *request.count;
-  return cut;
-}
-
-Lights levelCutLights(CountRange counts, RegionMeasure measure, LightPlace place) {
+// A light for each cluster of cluster(table, request).
+template <class Cluster>
+Lights clusterLights(CountRange counts, bool isStochastic, const Cluster& cluster) {
   return {.make =
               [=](const Image& latLong, const LightRequest& request) {
-                return MadeLights{levelCut(latLong, levelCutOf(measure, place, request))};
+                const TexelTable table(latLong, kCoarseCells);
+                return MadeLights{cluster(table, request).lights()};
               },
           .counts = counts,
-          .takesLevels = true,
+          .isStochastic = isStochastic,
           .keepsEnergy = true,
           .regions =
               [=](const Image& latLong, const LightRequest& request) {
-                const LevelCut cut = levelCutOf(measure, place, request);
-                return LightRegions{levelCutPartition(latLong, cut), {}};
+                const TexelTable table(latLong, kCoarseCells);
+                return LightRegions{cluster(table, request).partition(latLong), {}};
               }};
 }
 
 }  // namespace
 
 Lights medianCutLights(CountRange counts) {
-  Lights byEnergy = constellation(counts, medianCut, medianCutPartition);
-  const Lights byLevel = levelCutLights(counts, RegionMeasure::SolidAngle, LightPlace::Centroid);
-  const auto either = [](const auto& one, const auto& other) {
-    return [=](const Image& latLong, const LightRequest& request) {
-      return request.levels ? other(latLong, request) : one(latLong, request);
-    };
+  const auto cut = [](const RegionTable& table, const LightRequest& request) {
+    return request.levels ? levelCutOf(table, request) : medianCutRegions(table, *request.count);
   };
-  byEnergy.make = either(byEnergy.make, byLevel.make);
-  byEnergy.regions = either(byEnergy.regions, byLevel.regions);
-  byEnergy.takesLevels = true;
-  return byEnergy;
+  Lights lights = cutLights(counts, RegionMeasure::SolidAngle, LightPlace::Centroid, cut);
+  lights.takesLevels = true;
+  return lights;
 }
 
 Lights centreCutLights(CountRange counts) {
-  return levelCutLights(counts, RegionMeasure::SolidAngle, LightPlace::Centre);
+  return centreLights(counts, RegionMeasure::SolidAngle);
 }
 
-Lights flatCutLights(CountRange counts) {
-  return levelCutLights(counts, RegionMeasure::MapArea, LightPlace::Centre);
-}
+Lights flatCutLights(CountRange counts) { return centreLights(counts, RegionMeasure::MapArea); }
 
 Lights varianceCutLights(CountRange counts) {
-  return constellation(counts, varianceCut, varianceCutPartition);
+  return cutLights(counts, RegionMeasure::SolidAngle, LightPlace::Centroid,
+                   [](const RegionTable& table, const LightRequest& request) {
+                     return varianceCutRegions(table, *request.count);
+                   });
 }
 
 Lights lightGenLights(CountRange counts) {
-  return constellation(counts, lightGen, lightGenClusters);
+  return clusterLights(counts, true, [](const TexelTable& table, const LightRequest& request) {
+    return lightGenClusters(table, *request.count, request.seed);
+  });
 }
 
 Lights kolligKellerLights(CountRange counts) {
-  return constellation(counts, kolligKeller, kolligKellerRegions);
+  return clusterLights(counts, false, [](const TexelTable& table, const LightRequest& request) {
+    return kolligKellerClusters(table, *request.count);
+  });
 }
 
 Lights strataLights(CountRange counts) {
-  return constellation(counts, kolligKellerStrata, kolligKellerClusters);
+  Lights lights = kolligKellerLights(counts);
+  lights.isStochastic = true;
+  lights.make = [](const Image& latLong, const LightRequest& request) {
+    return MadeLights{kolligKellerStrata(latLong, *request.count, request.seed)};
+  };
+  return lights;
 }
 
 Lights cubeGridLights(CountRange counts) {
-  return constellation(counts, cubeGrid, cubeGridRegions);
+  return {.make =
+              [](const Image& latLong, const LightRequest& request) {
+                return MadeLights{cubeGrid(TexelTable(latLong, kFineCells), *request.count)};
+              },
+          .counts = counts,
+          .keepsEnergy = true,
+          .regions =
+              [](const Image& latLong, const LightRequest& request) {
+                return LightRegions{cubeGridRegions(latLong, *request.count), {}};
+              }};
 }
 
-Lights penroseLights(CountRange counts) { return constellation(counts, penrose, penroseRhombs); }
+Lights penroseLights(CountRange counts) {
+  return {.make =
+              [](const Image& latLong, const LightRequest& request) {
+                return MadeLights{penrose(ImportanceTable(latLong), *request.count, request.seed)};
+              },
+          .counts = counts,
+          .isStochastic = true,
+          .keepsEnergy = true,
+          .regions =
+              [](const Image& latLong, const LightRequest& request) {
+                return LightRegions{
+                    {}, penroseTiling(ImportanceTable(latLong), *request.count, request.seed)};
+              }};
+}
 
 }  // namespace chromeball

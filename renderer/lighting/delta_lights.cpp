@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/delta_lights.h"
 
-#include <algorithm>
-
 #include "shading/bsdf.h"
 
 namespace chromeball {
@@ -16,10 +14,21 @@ float importance(const DirectionSample& light, const LightPoint& point) {
   return luminance(light.irradiance) * std::max(glm::dot(light.wi, point.normal), 0.0f);
 }
 
+double smallestSolidAngle() {
+  const double chord = 2 * std::sin(ShownLights::kShownDegrees * kPiD / 720);
+  return kPiD * chord * chord;
+}
+
+std::vector<AreaLight> large(std::vector<AreaLight> lights) {
+  for (AreaLight& light : lights)
+    light.solidAngle = std::max(light.solidAngle, smallestSolidAngle());
+  return lights;
+}
+
 }  // namespace
 
 DeltaLights::DeltaLights(const Probe& probe, const Constellation& lights, const Rgb& ambient)
-    : probe_(probe), ambient_(ambient), count_(lights.size()) {
+    : ProbeLight(probe), ambient_(ambient), count_(lights.size()) {
   for (size_t i = 0; i < count_; ++i)
     if (const DirectionalLight& light = lights[i]; !isBlack(light.irradiance))
       lights_.push_back(
@@ -62,24 +71,9 @@ void DeltaLights::sample(const LightPoint& point, const PixelSampler& sampler,
   out.resize(kept);
 }
 
-namespace {
-
-double smallestSolidAngle() {
-  const double chord = 2 * std::sin(ShownLights::kShownDegrees * kPiD / 720);
-  return kPiD * chord * chord;
-}
-
-std::vector<AreaLight> large(std::vector<AreaLight> lights) {
-  for (AreaLight& light : lights)
-    light.solidAngle = std::max(light.solidAngle, smallestSolidAngle());
-  return lights;
-}
-
-}  // namespace
-
 ShownLights::ShownLights(std::unique_ptr<LightSource> strategy, std::vector<AreaLight> lights,
                          const Rgb& ambient)
-    : strategy_(std::move(strategy)), discs_(large(std::move(lights))), ambient_(ambient) {}
+    : WrappedLight(std::move(strategy)), discs_(large(std::move(lights))), ambient_(ambient) {}
 
 std::vector<AreaLight> shownLights(const Constellation& lights, const Rotation& rotation) {
   std::vector<AreaLight> shown;

@@ -6,9 +6,7 @@
 
 #include "lighting/area_lights.h"
 #include "lighting/constellation/directional_light.h"
-#include "lighting/light_source.h"
 #include "math/rotation.h"
-#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -19,7 +17,7 @@ namespace chromeball {
 // The first hit uses all lights. Later hits choose kLater lights, with probability proportional to
 // irradiance x cosine (x BSDF for layered BSDFs, which may transmit light), and divide by the
 // probability: less noise in the same time than with all lights.
-class DeltaLights : public LightSource {
+class DeltaLights : public ProbeLight {
  public:
   static constexpr int kLater = 4;
 
@@ -30,7 +28,6 @@ class DeltaLights : public LightSource {
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint&, const vec3&) const override { return {ambient_, 0}; }
-  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   // N lights have a mean solid angle of 4 pi / N each. A narrower lobe, 4 pi alpha^2 < 4 pi / N,
   // would reflect the lights as separate highlights.
   float mirrorAlpha() const override {
@@ -42,13 +39,8 @@ class DeltaLights : public LightSource {
   void splitEscaped(const LightPoint&, const vec3&, std::span<Rgb> radiances) const override {
     radiances[count_] += ambient_;
   }
-  void splitBackground(const vec3& origin, const vec3& wi,
-                       std::span<Rgb> radiances) const override {
-    radiances.back() += background(origin, wi);
-  }
 
  private:
-  const Probe& probe_;
   Rgb ambient_;
   size_t count_;                         // of the constellation's lights
   std::vector<DirectionSample> lights_;  // without black ones
@@ -59,38 +51,18 @@ class DeltaLights : public LightSource {
 
 // Each light is seen as a disc with its energy and its solid angle, but at least
 // kShownDegrees in diameter, before `ambient` (black, where none was fitted).
-class ShownLights : public LightSource {
+class ShownLights : public WrappedLight {
  public:
   static constexpr double kShownDegrees = 1;
 
   ShownLights(std::unique_ptr<LightSource> strategy, std::vector<AreaLight> lights,
               const Rgb& ambient = Rgb(0));
 
-  void sample(const LightPoint& point, const PixelSampler& sampler,
-              std::vector<DirectionSample>& out) const override {
-    strategy_->sample(point, sampler, out);
-  }
-  Escaped escaped(const LightPoint& point, const vec3& wi) const override {
-    return strategy_->escaped(point, wi);
-  }
   Rgb background(const vec3&, const vec3& wi) const override {
     return ambient_ + discs_.at(wi).radiance;
   }
-  float mirrorAlpha() const override { return strategy_->mirrorAlpha(); }
-  bool unbiased() const override { return strategy_->unbiased(); }
-  std::vector<std::string> groups() const override { return strategy_->groups(); }
-  void splitEscaped(const LightPoint& point, const vec3& wi,
-                    std::span<Rgb> radiances) const override {
-    strategy_->splitEscaped(point, wi, radiances);
-  }
-  // The last group holds what the camera and mirrors see.
-  void splitBackground(const vec3& origin, const vec3& wi,
-                       std::span<Rgb> radiances) const override {
-    radiances.back() += background(origin, wi);
-  }
 
  private:
-  std::unique_ptr<LightSource> strategy_;
   DiscAreas discs_;
   Rgb ambient_;
 };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/emitters.h"
 
-#include <numeric>
-
 #include "math/warp.h"
 #include "scene/placed_triangles.h"
 #include "scene/surface.h"

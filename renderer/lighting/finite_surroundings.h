@@ -23,13 +23,13 @@ namespace chromeball {
 // The camera and mirrors see the probe as captured; lamps made from suns light only broad lobes
 // (RADIANCE's "illum"). With `showsLights` they see on the surface what the strategy shows instead
 // of the probe: its lights (StrategyOptions::showLights), polygons that are no illums.
-class FiniteSurroundings : public LightSource {
+class FiniteSurroundings : public WrappedLight {
  public:
   // `room`: replaces the box or sphere of `surroundings` unless null; must outlive this.
   FiniteSurroundings(std::unique_ptr<LightSource> strategy, const Probe& probe,
                      const Surroundings& surroundings, const Walls* room = nullptr,
                      bool showsLights = false)
-      : strategy_(std::move(strategy)),
+      : WrappedLight(std::move(strategy)),
         probe_(probe),
         surroundings_(surroundings),
         room_(room),
@@ -38,12 +38,7 @@ class FiniteSurroundings : public LightSource {
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
-  bool takesOneSample() const override { return strategy_->takesOneSample(); }
-  bool canBeGuided() const override { return strategy_->canBeGuided(); }
   Rgb background(const vec3& origin, const vec3& wi) const override;
-  float mirrorAlpha() const override { return strategy_->mirrorAlpha(); }
-  bool unbiased() const override { return strategy_->unbiased(); }
-  std::vector<std::string> groups() const override { return strategy_->groups(); }
   void splitEscaped(const LightPoint& point, const vec3& wi,
                     std::span<Rgb> radiances) const override;
   void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const override;
@@ -59,7 +54,6 @@ class FiniteSurroundings : public LightSource {
   // The solid angle of a patch at y seen from x, relative to that from the capture point.
   float solidAngleRatio(const vec3& x, const Surroundings::Point& y) const;
 
-  std::unique_ptr<LightSource> strategy_;
   const Probe& probe_;
   Surroundings surroundings_;
   const Walls* room_;

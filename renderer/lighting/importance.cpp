@@ -29,10 +29,40 @@ double meanLuminance(const Probe& probe) {
   return sum / weight;
 }
 
+constexpr int kWidth = LanesOf<Float8>::kCount;
+
+// Calls visit(first, count) for groups of lanes.
+template <class Visit>
+void forLanes(size_t size, const Visit& visit) {
+  for (size_t first = 0; first < size; first += kWidth)
+    visit(first, int(std::min<size_t>(kWidth, size - first)));
+}
+
+// Directions and their positions on the probe, in lanes.
+struct Located {
+  std::array<Lanes3<Float8>, LightSource::kMaxMany / kWidth> directions;
+  std::array<Probe::PositionOf<Float8>, LightSource::kMaxMany / kWidth> positions;
+
+  template <class Ray>
+  Located(const Probe& probe, std::span<const Ray> rays) {
+    assert(rays.size() <= LightSource::kMaxMany);
+    forLanes(rays.size(), [&](size_t first, int count) {
+      Lanes3<Float8>& d = directions[first / kWidth];
+      d = Lanes3<Float8>{};
+      for (int k = 0; k < count; ++k) {
+        const vec3& wi = rays[first + size_t(k)].wi;
+        d.x[k] = wi.x, d.y[k] = wi.y, d.z[k] = wi.z;
+      }
+      const auto& p = positions[first / kWidth] = probe.locate(d);
+      for (int k = 0; k < count; ++k) probe.prefetch(p.column[k], p.row[k]);
+    });
+  }
+};
+
 }  // namespace
 
 Importance::Importance(const Probe& probe, bool compensated)
-    : probe_(probe),
+    : ProbeLight(probe),
       field_(probe),
       rows_(1, probe.cellRows()),
       columns_(probe.cellRows(), probe.width()),
@@ -65,10 +95,6 @@ DirectionSample Importance::sampleDirection(double u, double v) const {
   if (!(total_ > 0)) return {vec3(0, 1, 0), Rgb(0), 0};
   const int row = rows_.sample(0, v);
   const int column = columns_.sample(row, u);
-  return sampleOf(column, row, u, v);
-}
-
-DirectionSample Importance::sampleOf(int column, int row, double u, double v) const {
   const LuminanceField::Point point = field_.sample(column, row, float(u), float(v));
   const float pdf = point.weight * scale_;
   return {point.direction, point.radiance / pdf, pdf};
@@ -82,26 +108,9 @@ void Importance::sample(const LightPoint&, const PixelSampler& sampler,
 }
 
 LightSource::Escaped Importance::escaped(const LightPoint&, const vec3& wi) const {
-  return escapedAt(wi, probe_.locate(wi));
-}
-
-LightSource::Escaped Importance::escapedAt(const vec3& wi, const Probe::Position& position) const {
-  const LuminanceField::Point seen = field_.at(wi, position);
+  const LuminanceField::Point seen = field_.at(wi, probe_.locate(wi));
   return {seen.radiance, seen.weight * scale_};
 }
-
-namespace {
-
-constexpr int kWidth = LanesOf<Float8>::kCount;
-
-// Calls visit(first, count) for groups of lanes.
-template <class Visit>
-void forLanes(size_t size, const Visit& visit) {
-  for (size_t first = 0; first < size; first += kWidth)
-    visit(first, int(std::min<size_t>(kWidth, size - first)));
-}
-
-}  // namespace
 
 // Each loop prefetches what the next one reads.
 bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
@@ -141,31 +150,6 @@ bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
   });
   return true;
 }
-
-namespace {
-
-// Directions and their positions on the probe, in lanes.
-struct Located {
-  std::array<Lanes3<Float8>, LightSource::kMaxMany / kWidth> directions;
-  std::array<Probe::PositionOf<Float8>, LightSource::kMaxMany / kWidth> positions;
-
-  template <class Ray>
-  Located(const Probe& probe, std::span<const Ray> rays) {
-    assert(rays.size() <= LightSource::kMaxMany);
-    forLanes(rays.size(), [&](size_t first, int count) {
-      Lanes3<Float8>& d = directions[first / kWidth];
-      d = Lanes3<Float8>{};
-      for (int k = 0; k < count; ++k) {
-        const vec3& wi = rays[first + size_t(k)].wi;
-        d.x[k] = wi.x, d.y[k] = wi.y, d.z[k] = wi.z;
-      }
-      const auto& p = positions[first / kWidth] = probe.locate(d);
-      for (int k = 0; k < count; ++k) probe.prefetch(p.column[k], p.row[k]);
-    });
-  }
-};
-
-}  // namespace
 
 void Importance::escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const {
   const Located at(probe_, rays);

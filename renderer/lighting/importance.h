@@ -3,10 +3,9 @@
 // "Infinite Area Light Source with Importance Sampling", 2004; HDRI book, section 9.6.3).
 #pragma once
 
-#include "lighting/light_source.h"
 #include "lighting/luminance_field.h"
+#include "lighting/probe_light.h"
 #include "math/cdf.h"
-#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -19,7 +18,7 @@ namespace chromeball {
 // Importance Sampling", 2019): w becomes max(luminance - mean, 0) x sin(theta), because BSDF
 // samples cover the rest. Only valid with MIS. The plain w is used if the total of the compensated
 // w is almost 0.
-class Importance : public LightSource {
+class Importance : public ProbeLight {
  public:
   Importance(const Probe& probe, bool compensated);
 
@@ -29,9 +28,7 @@ class Importance : public LightSource {
   bool sampleMany(std::span<const glm::uvec2> numbers,
                   std::span<DirectionSample> out) const override;
   void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const override;
-  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
   void backgroundMany(std::span<const Sight> rays, std::span<Rgb> out) const override;
-  bool unbiased() const override { return true; }
 
   // The sample from two numbers in [0, 1), and its pdf over solid angle; 0 for a black probe.
   DirectionSample sampleDirection(double u, double v) const;
@@ -45,10 +42,7 @@ class Importance : public LightSource {
 
  private:
   double tabulate();
-  DirectionSample sampleOf(int column, int row, double u, double v) const;
-  Escaped escapedAt(const vec3& wi, const Probe::Position& position) const;
 
-  const Probe& probe_;
   LuminanceField field_;
   CdfRows rows_, columns_;
   double total_;

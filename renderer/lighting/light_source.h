@@ -3,7 +3,7 @@
 // a scene.
 #pragma once
 
-#include <cmath>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -65,6 +65,11 @@ class LightSource {
   struct Escaped {
     Rgb radiance;
     float pdf;
+
+    Escaped& operator+=(const Escaped& other) {
+      radiance += other.radiance, pdf += other.pdf;
+      return *this;
+    }
   };
   virtual Escaped escaped(const LightPoint&, const vec3&) const { return {Rgb(0), 0}; }
 
@@ -125,14 +130,41 @@ class LightSource {
   // Surfaces in the scene have none: they belong to their nodes' groups.
   virtual std::vector<std::string> groups() const { return {"probe"}; }
   // Splits the radiance of escaped(), or of background(), by group and adds it: one element of
-  // `radiances` per group.
+  // `radiances` per group. Where a group holds what the camera and mirrors see, it is the last.
   virtual void splitEscaped(const LightPoint& point, const vec3& wi,
                             std::span<Rgb> radiances) const {
     radiances.front() += escaped(point, wi).radiance;
   }
   virtual void splitBackground(const vec3& origin, const vec3& wi, std::span<Rgb> radiances) const {
-    radiances.front() += background(origin, wi);
+    radiances.back() += background(origin, wi);
   }
+};
+
+// A source that is another one but for what the camera and mirrors see, and for what classes
+// override.
+class WrappedLight : public LightSource {
+ public:
+  explicit WrappedLight(std::unique_ptr<LightSource> strategy) : strategy_(std::move(strategy)) {}
+
+  void sample(const LightPoint& point, const PixelSampler& sampler,
+              std::vector<DirectionSample>& out) const override {
+    strategy_->sample(point, sampler, out);
+  }
+  Escaped escaped(const LightPoint& point, const vec3& wi) const override {
+    return strategy_->escaped(point, wi);
+  }
+  bool takesOneSample() const override { return strategy_->takesOneSample(); }
+  bool canBeGuided() const override { return strategy_->canBeGuided(); }
+  float mirrorAlpha() const override { return strategy_->mirrorAlpha(); }
+  bool unbiased() const override { return strategy_->unbiased(); }
+  std::vector<std::string> groups() const override { return strategy_->groups(); }
+  void splitEscaped(const LightPoint& point, const vec3& wi,
+                    std::span<Rgb> radiances) const override {
+    strategy_->splitEscaped(point, wi, radiances);
+  }
+
+ protected:
+  std::unique_ptr<LightSource> strategy_;
 };
 
 }  // namespace chromeball

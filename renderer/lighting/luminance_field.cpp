@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/luminance_field.h"
 
-#include <algorithm>
-
 #include "base/parallel.h"
 
 namespace chromeball {

@@ -12,10 +12,10 @@
 #include "lighting/delta_lights.h"
 #include "lighting/fit/irradiance_fit.h"
 #include "lighting/importance.h"
+#include "lighting/probe_light.h"
 #include "lighting/product.h"
 #include "lighting/strata.h"
 #include "lighting/suns.h"
-#include "lighting/uniform.h"
 #include "probe/sun_extraction.h"
 
 namespace chromeball {

@@ -65,10 +65,7 @@ bool PolygonLights::sampleDistant(const glm::uvec2& numbers, DirectionSample& ou
 LightSource::Escaped PolygonLights::escaped(const LightPoint&, const vec3& wi) const {
   Escaped sum{Rgb(0), 0};
   for (const Light& light : lights_)
-    if (!light.isIllum && light.polygon.contains(dvec3(wi))) {
-      sum.radiance += light.radiance;
-      sum.pdf += light.pdf;
-    }
+    if (!light.isIllum && light.polygon.contains(dvec3(wi))) sum += {light.radiance, light.pdf};
   return sum;
 }
 

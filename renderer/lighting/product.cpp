@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/product.h"
 
-#include <algorithm>
-
 #include "base/parallel.h"
 
 namespace chromeball {
@@ -58,7 +56,7 @@ double meanCosine(const std::vector<vec3>& directions, const std::vector<vec3>& 
 }  // namespace
 
 Product::Product(const Probe& probe)
-    : probe_(probe),
+    : ProbeLight(probe),
       field_(probe),
       rows_(kBins, field_.rows()),
       columns_(kBins * field_.rows(), field_.columns()),

@@ -3,10 +3,9 @@
 // surface most of the remaining variance comes from visibility.
 #pragma once
 
-#include "lighting/light_source.h"
 #include "lighting/luminance_field.h"
+#include "lighting/probe_light.h"
 #include "math/cdf.h"
-#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -17,15 +16,13 @@ namespace chromeball {
 //   pdf = (pdf proportional to luminance) x pdfRatio(bin, block).
 // On a transmissive surface half of the samples use the opposite normal. The pdf does not follow
 // specular lobes; BSDF samples do.
-class Product : public LightSource {
+class Product : public ProbeLight {
  public:
   explicit Product(const Probe& probe);
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
-  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
-  bool unbiased() const override { return true; }
 
   // The sample from two numbers in [0, 1); pdf 0 for a black probe.
   DirectionSample sampleDirection(const LightPoint& point, double u, double v) const;
@@ -38,7 +35,6 @@ class Product : public LightSource {
   }
   float pdfRatio(const LightPoint& point, int block) const;
 
-  const Probe& probe_;
   BlockedField field_;
   CdfRows rows_;                  // of blocks, for each bin
   CdfRows columns_;               // of blocks, for each bin and row of blocks

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/strata.h"
 
-#include <algorithm>
-
 #include "base/hash.h"
 
 namespace chromeball {
@@ -40,7 +38,7 @@ Stratum::Cell Stratum::choose(double& u, double& v) const {
 }
 
 Strata::Strata(const Probe& probe, int regions)
-    : probe_(probe),
+    : ProbeLight(probe),
       field_(probe),
       partition_(kolligKellerRegions(probe.latLong(), regions)),
       strata_(partition_.regions),

@@ -4,10 +4,9 @@
 #pragma once
 
 #include "lighting/constellation/kollig_keller.h"
-#include "lighting/light_source.h"
 #include "lighting/luminance_field.h"
+#include "lighting/probe_light.h"
 #include "math/cdf.h"
-#include "probe/probe.h"
 
 namespace chromeball {
 
@@ -40,7 +39,7 @@ class Stratum {
 // The regions are the same as kollig-keller's; they are small where the probe is bright. The first
 // hit takes one sample in each region, with pdf proportional to luminance. Later hits take kLater
 // samples, in regions chosen with probability proportional to their energy.
-class Strata : public LightSource {
+class Strata : public ProbeLight {
  public:
   static constexpr int kLater = 1;  // samples
 
@@ -50,8 +49,6 @@ class Strata : public LightSource {
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
-  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
-  bool unbiased() const override { return true; }
 
   // There may be fewer regions than requested.
   int regions() const { return int(strata_.size()); }
@@ -67,7 +64,6 @@ class Strata : public LightSource {
   float pdfScale(int region, int depth) const;
   DirectionSample sampleCells(int region, double u, double v, float scale) const;
 
-  const Probe& probe_;
   LuminanceField field_;
   Partition partition_;  // of cells, each in the region of the texel at its upper left corner
   std::vector<Stratum> strata_;

@@ -6,6 +6,11 @@ namespace {
 
 constexpr size_t kMaxSampledEach = 2;  // of more discs, one is chosen by power
 
+std::vector<Sun> withAngle(std::vector<Sun> suns, std::optional<double> angle) {
+  for (Sun& sun : suns) sun.angle = angle.value_or(sun.angle);
+  return suns;
+}
+
 }  // namespace
 
 SkyDiscs::SkyDiscs(const std::vector<Sun>& suns, const Rotation& rotation) {
@@ -22,19 +27,9 @@ SkyDiscs::SkyDiscs(const std::vector<Sun>& suns, const Rotation& rotation) {
     const double chord = 2 * std::sin(sun.angle * kPiD / 720);
     const double probability = chooses ? powers[i] / power : 1;
     discs_.push_back({{Frame(vec3(rotation(sun.direction))), float(chord * chord)},
-                      Rgb(sun.radiance()),
-                      float(probability / (kPiD * chord * chord))});
+                      {Rgb(sun.radiance()), float(probability / (kPiD * chord * chord))}});
   }
 }
-
-namespace {
-
-std::vector<Sun> withAngle(std::vector<Sun> suns, std::optional<double> angle) {
-  for (Sun& sun : suns) sun.angle = angle.value_or(sun.angle);
-  return suns;
-}
-
-}  // namespace
 
 Suns::Suns(const Probe& probe, bool compensated, std::optional<double> angle)
     : Suns(extractSuns(probe.latLong()), probe.rotation(), compensated, angle) {}
@@ -59,9 +54,7 @@ void Suns::sample(const LightPoint& point, const PixelSampler& sampler,
 
 LightSource::Escaped Suns::escaped(const LightPoint& point, const vec3& wi) const {
   Escaped light = importance_.escaped(point, wi);
-  const SkyDiscs::Light discs = discs_.at(wi);
-  light.radiance += discs.radiance;
-  light.pdf += discs.pdf;
+  light += discs_.at(wi);
   return light;
 }
 
@@ -80,8 +73,7 @@ void Suns::splitEscaped(const LightPoint&, const vec3& wi, std::span<Rgb> radian
 }
 
 void Suns::splitBackground(const vec3&, const vec3& wi, std::span<Rgb> radiances) const {
-  radiances.front() += discs_.at(wi).radiance;
-  radiances.back() += remainder_.radiance(wi);
+  splitEscaped({}, wi, radiances);
 }
 
 SplitProbe::SplitProbe(std::unique_ptr<LightSource> strategy, const Probe& probe)
@@ -89,7 +81,7 @@ SplitProbe::SplitProbe(std::unique_ptr<LightSource> strategy, const Probe& probe
 
 SplitProbe::SplitProbe(std::unique_ptr<LightSource> strategy, const SunExtraction& extraction,
                        const Rotation& rotation)
-    : strategy_(std::move(strategy)),
+    : WrappedLight(std::move(strategy)),
       hasSuns_(!extraction.suns.empty()),
       rest_(extraction.remainder, rotation) {}
 

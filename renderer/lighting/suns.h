@@ -49,31 +49,24 @@ class SkyDiscs {
     }
   }
 
-  // The sum over all discs in a direction.
-  struct Light {
-    Rgb radiance{0};
-    float pdf = 0;  // of sample(), over solid angle: the sum over its directions
-  };
+  // The sum over all discs in a direction; the pdf is that of sample().
+  using Light = LightSource::Escaped;
   Light at(const vec3& wi) const {
-    Light light;
-    forDiscsAt(wi, [&](size_t, const Light& disc) {
-      light.radiance += disc.radiance;
-      light.pdf += disc.pdf;
-    });
-    return light;
+    Light sum{Rgb(0), 0};
+    forDiscsAt(wi, [&](size_t, const Light& disc) { sum += disc; });
+    return sum;
   }
   // Calls visit(index of the sun, its Light) for each disc in the direction.
   template <class Visit>
   void forDiscsAt(const vec3& wi, const Visit& visit) const {
     for (size_t i = 0; i < discs_.size(); ++i)
-      if (discs_[i].cap.contains(wi)) visit(i, Light{discs_[i].radiance, discs_[i].pdf});
+      if (discs_[i].cap.contains(wi)) visit(i, discs_[i].light);
   }
 
  private:
   struct Disc {
     SphericalCap cap;
-    Rgb radiance;
-    float pdf;  // inside this disc
+    Light light;  // inside this disc
   };
 
   std::vector<Disc> discs_;
@@ -121,17 +114,10 @@ class Suns : public LightSource {
 // groups.
 
 // Samples and radiances are the strategy's.
-class SplitProbe : public LightSource {
+class SplitProbe : public WrappedLight {
  public:
   SplitProbe(std::unique_ptr<LightSource> strategy, const Probe& probe);
 
-  void sample(const LightPoint& point, const PixelSampler& sampler,
-              std::vector<DirectionSample>& out) const override {
-    strategy_->sample(point, sampler, out);
-  }
-  Escaped escaped(const LightPoint& point, const vec3& wi) const override {
-    return strategy_->escaped(point, wi);
-  }
   void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const override {
     strategy_->escapedMany(rays, out);
   }
@@ -139,12 +125,9 @@ class SplitProbe : public LightSource {
                   std::span<DirectionSample> out) const override {
     return strategy_->sampleMany(numbers, out);
   }
-  bool takesOneSample() const override { return strategy_->takesOneSample(); }
   Rgb background(const vec3& origin, const vec3& wi) const override {
     return strategy_->background(origin, wi);
   }
-  float mirrorAlpha() const override { return strategy_->mirrorAlpha(); }
-  bool unbiased() const override { return strategy_->unbiased(); }
 
   std::vector<std::string> groups() const override;
   void splitEscaped(const LightPoint& point, const vec3& wi,
@@ -161,7 +144,6 @@ class SplitProbe : public LightSource {
              const Rotation& rotation);
   void split(const Rgb& whole, const vec3& wi, std::span<Rgb> radiances) const;
 
-  std::unique_ptr<LightSource> strategy_;
   bool hasSuns_;
   Probe rest_;  // without the suns
 };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/cdf.h"
 
-#include <cassert>
-
 #include "base/memory.h"
 
 namespace chromeball {

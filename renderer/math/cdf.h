@@ -57,8 +57,6 @@ class CdfRows {
   std::vector<int32_t> guide_;  // rows x (kGuide + 1): the column that contains k / kGuide
 };
 
-// Quantiles of numbers.
-
 // The number that `fraction` of the others, 0 to 1, are below: one of `values`, which are not
 // empty.
 template <class T>

@@ -2,36 +2,11 @@
 #include "math/dense_solvers.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 
 namespace chromeball {
-
-Eigen::MatrixXd normalMatrix(const Eigen::MatrixXd& jacobian) {
-  return jacobian.transpose() * jacobian;
-}
-
-Eigen::MatrixXd inverseOf(const Eigen::MatrixXd& matrix) { return matrix.inverse(); }
-
-Eigen::VectorXd solveSymmetric(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
-  return matrix.ldlt().solve(right);
-}
-
-LeastSquares::LeastSquares(int unknowns)
-    : unknowns_(unknowns), matrix_(size_t(unknowns) * unknowns), right_(size_t(unknowns)) {}
-
-void LeastSquares::add(std::span<const Term> row, double target, double weight) {
-  for (const Term& a : row) {
-    for (const Term& b : row)
-      if (b.unknown <= a.unknown)
-        matrix_[size_t(a.unknown) * unknowns_ + b.unknown] +=
-            weight * a.coefficient * b.coefficient;
-    right_[size_t(a.unknown)] += weight * a.coefficient * target;
-  }
-}
-
 namespace {
 
 using NormalMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -42,9 +17,8 @@ struct ScaledFactors {
   Eigen::LDLT<NormalMatrix, Eigen::Lower> factors;
   bool isDefinite = false;
 
-  ScaledFactors(const std::vector<double>& lower, int unknowns) {
+  explicit ScaledFactors(const NormalMatrix& matrix) {
     constexpr double kLeastPivot = 1e-13;
-    const Eigen::Map<const NormalMatrix> matrix(lower.data(), unknowns, unknowns);
     if (!(matrix.diagonal().minCoeff() > 0)) return;
     scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
     factors.compute(scale.asDiagonal() * matrix * scale.asDiagonal());
@@ -58,20 +32,41 @@ struct ScaledFactors {
 
 }  // namespace
 
+Eigen::MatrixXd normalMatrix(const Eigen::MatrixXd& jacobian) {
+  return jacobian.transpose() * jacobian;
+}
+
+Eigen::MatrixXd inverseOf(const Eigen::MatrixXd& matrix) { return matrix.inverse(); }
+
+Eigen::VectorXd solveSymmetric(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  return matrix.ldlt().solve(right);
+}
+
+LeastSquares::LeastSquares(int unknowns)
+    : matrix_(NormalMatrix::Zero(unknowns, unknowns)), right_(Eigen::VectorXd::Zero(unknowns)) {}
+
+void LeastSquares::add(std::span<const Term> row, double target, double weight) {
+  for (const Term& a : row) {
+    for (const Term& b : row)
+      if (b.unknown <= a.unknown)
+        matrix_(a.unknown, b.unknown) += weight * a.coefficient * b.coefficient;
+    right_[a.unknown] += weight * a.coefficient * target;
+  }
+}
+
 std::optional<std::vector<double>> LeastSquares::solve() const {
-  const ScaledFactors scaled(matrix_, unknowns_);
+  const ScaledFactors scaled(matrix_);
   if (!scaled.isDefinite) return std::nullopt;
-  const Eigen::VectorXd solution =
-      scaled.solve(Eigen::Map<const Eigen::VectorXd>(right_.data(), unknowns_));
+  const Eigen::VectorXd solution = scaled.solve(right_);
   return std::vector<double>(solution.begin(), solution.end());
 }
 
 std::optional<std::vector<double>> LeastSquares::variances() const {
-  const ScaledFactors scaled(matrix_, unknowns_);
+  const ScaledFactors scaled(matrix_);
   if (!scaled.isDefinite) return std::nullopt;
   std::vector<double> diagonal;
-  for (int i = 0; i < unknowns_; ++i)
-    diagonal.push_back(scaled.solve(Eigen::VectorXd::Unit(unknowns_, i))[i]);
+  for (Eigen::Index i = 0; i < right_.size(); ++i)
+    diagonal.push_back(scaled.solve(Eigen::VectorXd::Unit(right_.size(), i))[i]);
   return diagonal;
 }
 

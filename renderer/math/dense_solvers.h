@@ -54,8 +54,8 @@ class LeastSquares {
   std::optional<std::vector<double>> variances() const;
 
  private:
-  int unknowns_;
-  std::vector<double> matrix_, right_;  // row by row, lower triangle; right-hand side
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;  // lower triangle
+  Eigen::VectorXd right_;
 };
 
 }  // namespace chromeball

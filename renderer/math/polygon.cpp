@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/polygon.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "base/error.h"
@@ -28,6 +26,13 @@ bool segmentsTouch(const dvec2& a, const dvec2& b, const dvec2& c, const dvec2& 
 
 bool triangleContains(const dvec2& a, const dvec2& b, const dvec2& c, const dvec2& p) {
   return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+}
+
+constexpr double kLeastCosine = 0.17364817766693033;  // of 80 degrees
+
+// The part of `v` that is perpendicular to the unit vector `axis`, normalised.
+dvec3 perpendicular(const dvec3& v, const dvec3& axis) {
+  return glm::normalize(v - glm::dot(v, axis) * axis);
 }
 
 }  // namespace
@@ -108,17 +113,6 @@ std::vector<dvec2> convexHull(std::vector<dvec2> points) {
   hull.pop_back();
   return hull;
 }
-
-namespace {
-
-constexpr double kLeastCosine = 0.17364817766693033;  // of 80 degrees
-
-// The part of `v` that is perpendicular to the unit vector `axis`, normalised.
-dvec3 perpendicular(const dvec3& v, const dvec3& axis) {
-  return glm::normalize(v - glm::dot(v, axis) * axis);
-}
-
-}  // namespace
 
 SphericalPolygon::SphericalPolygon(const std::vector<dvec3>& corners, const std::string& location)
     : corners_(corners) {

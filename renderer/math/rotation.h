@@ -61,8 +61,6 @@ class Rotation {
 // more than a turn is possible, else the shortest way at constant speed.
 Rotation between(const Rotation& from, const Rotation& to, double t);
 
-// Rotations: spread evenly, and by a vector.
-
 // The given number of rotations with no large gap between them: a super-Fibonacci spiral of unit
 // quaternions (Alexa 2022).
 std::vector<glm::dmat3> spreadRotations(int count);

@@ -4,8 +4,6 @@
 #include <array>
 #include <cassert>
 
-#include "base/hash.h"
-
 namespace chromeball {
 namespace {
 

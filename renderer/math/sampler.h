@@ -2,7 +2,6 @@
 // The random numbers of one path, a function of (pixel, sample, dimension, seed).
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Warps from the unit square to directions and triangles, each with its pdf and its inverse.
+// Warps from the unit square to directions and triangles, with their pdfs.
 // Hemispheres are about +z. Pdfs are over solid angle.
 #pragma once
 
@@ -27,7 +27,6 @@ inline vec2 uniformSphereToSquare(const vec3& v) { return {azimuthTurns(v), (1 -
 
 inline vec3 squareToUniformHemisphere(vec2 u) { return unitVector(1 - u.y, u.x); }
 inline float squareToUniformHemispherePdf(const vec3& v) { return v.z >= 0 ? 0.5f * kInvPi : 0; }
-inline vec2 uniformHemisphereToSquare(const vec3& v) { return {azimuthTurns(v), 1 - v.z}; }
 
 // Pdf cos(theta)/pi: lifts a uniform point of the unit disc to the hemisphere (Malley's method).
 // Concentric squares become circles (Shirley and Chiu 1997, "A Low Distortion Map Between Disk and
@@ -43,22 +42,12 @@ inline vec3 squareToCosineHemisphere(vec2 u) {
   return {isWide ? along : across, isWide ? across : along, std::sqrt(std::max(1 - r * r, 0.0f))};
 }
 inline float squareToCosineHemispherePdf(const vec3& v) { return v.z > 0 ? v.z * kInvPi : 0; }
-inline vec2 cosineHemisphereToSquare(const vec3& v) {
-  const bool isWide = std::fabs(v.x) > std::fabs(v.y);
-  const float along = isWide ? v.x : v.y, across = isWide ? v.y : v.x;
-  const float r = std::copysign(std::sqrt(v.x * v.x + v.y * v.y), along);
-  const float other = r == 0 ? 0 : 8 * r * atan2Turns(across / along, 1.0f);
-  return (vec2(isWide ? r : other, isWide ? other : r) + 1.0f) / 2.0f;
-}
 
 // Barycentric coordinates (of the second and third vertex), uniform over the triangle's area, pdf
 // 1/area (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
 inline vec2 squareToTriangle(vec2 u) {
   if (u.y > u.x) return {u.x / 2, u.y - u.x / 2};
   return {u.x - u.y / 2, u.y / 2};
-}
-inline vec2 triangleToSquare(vec2 b) {
-  return b.y > b.x ? vec2{2 * b.x, b.y + b.x} : vec2{b.x + b.y, 2 * b.y};
 }
 
 // A disc on the sphere of directions.

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/convert.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "probe/probe.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {
@@ -105,54 +101,6 @@ double heightOverDiameter(const Fisheye& lens) {
   return 0.5 * kPiD / std::sqrt(lens.solidAngleJacobian(0));
 }
 
-}  // namespace
-
-ImageSize latLongSize(Mapping mapping, const ImageSize& image) {
-  if (mapping == Mapping::LatLong) return image;
-  const std::optional<Fisheye> lens = mapping.disc();
-  const double height = lens ? image.width * heightOverDiameter(*lens)
-                             : 2.0 * (image.width / faceLayout(mapping).columns);
-  constexpr double kMostRows = 8192;
-  const int rows =
-      roundUpToEven(mapping.kind() == Mapping::FisheyeDisc ? std::min(height, kMostRows) : height);
-  return {2 * rows, rows};
-}
-
-ImageSize sizeFor(Mapping mapping, const ImageSize& latLong) {
-  if (mapping == Mapping::LatLong) return latLong;
-  const auto [columns, rows] = faceLayout(mapping);
-  const std::optional<Fisheye> lens = mapping.disc();
-  const int face =
-      roundUpToEven(lens ? latLong.height / heightOverDiameter(*lens) : 0.5 * latLong.height);
-  return {face * columns, face * rows};
-}
-
-Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& size,
-              const Rotation& rotation) {
-  if (parseMapping(mappingName(to), size.width, size.height, "convert") != to)
-    throwInput("convert: {} x {} is the wrong aspect ratio for this {} layout", size.width,
-               size.height, mappingName(to));
-  const ImageSize source{image.width, image.height};
-  if (from == to && rotation == Rotation() && size.width == image.width &&
-      size.height == image.height)
-    return image;
-
-  if (from == Mapping::LatLong) {
-    const int samples = samplesPerSide(from, source, to, size);
-    const Probe probe(image, rotation);
-    return rasterize(to, size, samples,
-                     [&](const dvec3& d) { return dvec3(probe.radiance(vec3(d))); });
-  }
-  return resample(image, from, to, size, matrixOf(rotation));
-}
-
-Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation) {
-  return resample(image, from, Mapping::LatLong, latLongSize(from, {image.width, image.height}),
-                  rotation);
-}
-
-namespace {
-
 // A weighted mean; black if nothing was added.
 struct Mean {
   dvec3 sum{0};
@@ -199,6 +147,50 @@ Image rasterizeLatLong(const ImageSize& size, int samplesPerSide,
 
 }  // namespace
 
+ImageSize latLongSize(Mapping mapping, const ImageSize& image) {
+  if (mapping == Mapping::LatLong) return image;
+  const std::optional<Fisheye> lens = mapping.disc();
+  const double height = lens ? image.width * heightOverDiameter(*lens)
+                             : 2.0 * (image.width / faceLayout(mapping).columns);
+  constexpr double kMostRows = 8192;
+  const int rows =
+      roundUpToEven(mapping.kind() == Mapping::FisheyeDisc ? std::min(height, kMostRows) : height);
+  return {2 * rows, rows};
+}
+
+ImageSize sizeFor(Mapping mapping, const ImageSize& latLong) {
+  if (mapping == Mapping::LatLong) return latLong;
+  const auto [columns, rows] = faceLayout(mapping);
+  const std::optional<Fisheye> lens = mapping.disc();
+  const int face =
+      roundUpToEven(lens ? latLong.height / heightOverDiameter(*lens) : 0.5 * latLong.height);
+  return {face * columns, face * rows};
+}
+
+Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& size,
+              const Rotation& rotation) {
+  if (parseMapping(mappingName(to), size.width, size.height, "convert") != to)
+    throwInput("convert: {} x {} is the wrong aspect ratio for this {} layout", size.width,
+               size.height, mappingName(to));
+  const ImageSize source{image.width, image.height};
+  if (from == to && rotation == Rotation() && size.width == image.width &&
+      size.height == image.height)
+    return image;
+
+  if (from == Mapping::LatLong) {
+    const int samples = samplesPerSide(from, source, to, size);
+    const Probe probe(image, rotation);
+    return rasterize(to, size, samples,
+                     [&](const dvec3& d) { return dvec3(probe.radiance(vec3(d))); });
+  }
+  return resample(image, from, to, size, matrixOf(rotation));
+}
+
+Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation) {
+  return resample(image, from, Mapping::LatLong, latLongSize(from, {image.width, image.height}),
+                  rotation);
+}
+
 Image rasterize(Mapping mapping, const ImageSize& size, int samplesPerSide,
                 const std::function<dvec3(const dvec3&)>& radiance) {
   if (mapping == Mapping::LatLong) return rasterizeLatLong(size, samplesPerSide, radiance);
@@ -235,11 +227,9 @@ DisplayTransform previewTransform(const Image& latLong) {
 Image probePreview(const Probe& probe, int width) {
   const DisplayTransform transform = previewTransform(probe.latLong());
   const ImageSize size{width, width / 2};
-  Image preview(size.width, size.height, 3);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x)
-      preview.setRgb(x, y, display(transform, probe.radiance(vec3(texelDirection(size, x, y)))));
-  return preview;
+  return colorImage(size.width, size.height, [&](int x, int y) {
+    return display(transform, probe.radiance(vec3(texelDirection(size, x, y))));
+  });
 }
 
 }  // namespace chromeball

@@ -35,11 +35,9 @@ Image convert(const Image& image, Mapping from, Mapping to, const ImageSize& siz
 // direction d of the source becomes rotation * d.
 Image latLongOf(const Image& image, Mapping from, const glm::dmat3& rotation);
 
-// Images of functions of direction, in any mapping.
-
-// Each texel is the mean of `radiance` over its solid angle, from samplesPerSide^2 samples; black
-// where the mapping shows no direction. Three channels. `radiance` takes unit directions and is
-// called concurrently.
+// The image of a function of direction: each texel is the mean of `radiance` over its solid angle,
+// from samplesPerSide^2 samples; black where the mapping shows no direction. Three channels.
+// `radiance` takes unit directions and is called concurrently.
 Image rasterize(Mapping mapping, const ImageSize& size, int samplesPerSide,
                 const std::function<dvec3(const dvec3&)>& radiance);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/convolve.h"
 
-#include <cmath>
 #include <limits>
 #include <optional>
 

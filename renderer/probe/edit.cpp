@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <complex>
 #include <limits>
 #include <vector>
@@ -16,60 +14,6 @@ namespace chromeball {
 namespace {
 
 bool isBelowHorizon(int row, const Image& latLong) { return 2 * row >= latLong.height; }
-
-}  // namespace
-
-void replaceBelowHorizon(Image& latLong, const Rgb& radiance) {
-  for (int y = 0; y < latLong.height; ++y) {
-    const bool isHalfBelow = 2 * y + 1 == latLong.height;
-    for (int x = 0; x < latLong.width; ++x)
-      if (isHalfBelow)
-        latLong.setRgb(x, y, 0.5f * latLong.rgb(x, y) + 0.5f * radiance);
-      else if (isBelowHorizon(y, latLong))
-        latLong.setRgb(x, y, radiance);
-  }
-}
-
-void mirrorAtHorizon(Image& latLong) {
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; isBelowHorizon(y, latLong) && x < latLong.width; ++x)
-      latLong.setRgb(x, y, latLong.rgb(x, latLong.height - 1 - y));
-}
-
-void mirrorLeftAndRight(Image& latLong) {
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; 2 * x < latLong.width - 1; ++x) {
-      const int opposite = latLong.width - 1 - x;
-      const Rgb left = latLong.rgb(x, y);
-      latLong.setRgb(x, y, latLong.rgb(opposite, y));
-      latLong.setRgb(opposite, y, left);
-    }
-}
-
-size_t multiplyRegion(Image& latLong, const dvec3& centre, double radius, const Rgb& gain) {
-  const double cosRadius = std::cos(radius * kPiD / 180);
-  size_t count = 0;
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x)
-      if (glm::dot(texelDirection({latLong.width, latLong.height}, x, y), centre) >= cosRadius) {
-        latLong.setRgb(x, y, latLong.rgb(x, y) * gain);
-        ++count;
-      }
-  return count;
-}
-
-void multiply(Image& latLong, const Rgb& scale) {
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x) latLong.setRgb(x, y, latLong.rgb(x, y) * scale);
-}
-
-void clip(Image& latLong, float limit) {
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x)
-      latLong.setRgb(x, y, glm::min(latLong.rgb(x, y), Rgb(limit)));
-}
-
-namespace {
 
 // The Fourier series of one channel of a row, about its azimuth: coefficients 0 to (width - 1) / 2.
 class RowSeries {
@@ -105,28 +49,6 @@ class RowSeries {
   std::vector<std::complex<double>> coefficients_, turn_;
   float minimum_ = 0, maximum_ = 0;
 };
-
-}  // namespace
-
-// Harmonic functions stay so under the stereographic projection from the zenith, which takes the
-// angle a from the nadir to the radius tan(a / 2).
-int fillNadir(Image& latLong, double radius) {
-  const auto angle = [&](int row) { return kPiD * (latLong.height - row - 0.5) / latLong.height; };
-  int first = latLong.height;
-  while (first > 0 && angle(first - 1) < radius * kPiD / 180) --first;
-  if (first == latLong.height || first == 0) return 0;
-  const double rim = std::tan(0.5 * angle(first - 1));
-  for (int channel = 0; channel < 3; ++channel) {
-    const RowSeries series(latLong, first - 1, channel);
-    parallelFor(first, latLong.height, [&](int y) {
-      for (int x = 0; x < latLong.width; ++x)
-        latLong.at(x, y)[channel] = series.inside(std::tan(0.5 * angle(y)) / rim, x);
-    });
-  }
-  return latLong.height - first;
-}
-
-namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -171,6 +93,68 @@ bool isValid(const Image& image) {
 
 }  // namespace
 
+void replaceBelowHorizon(Image& latLong, const Rgb& radiance) {
+  for (int y = 0; y < latLong.height; ++y) {
+    const bool isHalfBelow = 2 * y + 1 == latLong.height;
+    for (int x = 0; x < latLong.width; ++x)
+      if (isHalfBelow)
+        latLong.setRgb(x, y, 0.5f * latLong.rgb(x, y) + 0.5f * radiance);
+      else if (isBelowHorizon(y, latLong))
+        latLong.setRgb(x, y, radiance);
+  }
+}
+
+void mirrorAtHorizon(Image& latLong) {
+  for (int y = 0; y < latLong.height; ++y)
+    for (int x = 0; isBelowHorizon(y, latLong) && x < latLong.width; ++x)
+      latLong.setRgb(x, y, latLong.rgb(x, latLong.height - 1 - y));
+}
+
+void mirrorLeftAndRight(Image& latLong) {
+  for (int y = 0; y < latLong.height; ++y)
+    for (int x = 0; 2 * x < latLong.width - 1; ++x)
+      std::swap_ranges(latLong.at(x, y), latLong.at(x, y) + 3,
+                       latLong.at(latLong.width - 1 - x, y));
+}
+
+size_t multiplyRegion(Image& latLong, const dvec3& centre, double radius, const Rgb& gain) {
+  const double cosRadius = std::cos(radius * kPiD / 180);
+  size_t count = 0;
+  for (int y = 0; y < latLong.height; ++y)
+    for (int x = 0; x < latLong.width; ++x)
+      if (glm::dot(texelDirection({latLong.width, latLong.height}, x, y), centre) >= cosRadius) {
+        latLong.setRgb(x, y, latLong.rgb(x, y) * gain);
+        ++count;
+      }
+  return count;
+}
+
+void multiply(Image& latLong, const Rgb& scale) {
+  recolor(latLong, [&](const Rgb& c) { return c * scale; });
+}
+
+void clip(Image& latLong, float limit) {
+  recolor(latLong, [&](const Rgb& c) { return glm::min(c, Rgb(limit)); });
+}
+
+// Harmonic functions stay so under the stereographic projection from the zenith, which takes the
+// angle a from the nadir to the radius tan(a / 2).
+int fillNadir(Image& latLong, double radius) {
+  const auto angle = [&](int row) { return kPiD * (latLong.height - row - 0.5) / latLong.height; };
+  int first = latLong.height;
+  while (first > 0 && angle(first - 1) < radius * kPiD / 180) --first;
+  if (first == latLong.height || first == 0) return 0;
+  const double rim = std::tan(0.5 * angle(first - 1));
+  for (int channel = 0; channel < 3; ++channel) {
+    const RowSeries series(latLong, first - 1, channel);
+    parallelFor(first, latLong.height, [&](int y) {
+      for (int x = 0; x < latLong.width; ++x)
+        latLong.at(x, y)[channel] = series.inside(std::tan(0.5 * angle(y)) / rim, x);
+    });
+  }
+  return latLong.height - first;
+}
+
 RepairReport repair(Image& image, bool wrapX) {
   RepairReport report;
   if (isValid(image)) return report;
@@ -185,7 +169,6 @@ RepairReport repair(Image& image, bool wrapX) {
       if (report.total() == 0) report.firstX = x, report.firstY = y;
       ++(hasNan(c) ? report.nan : isFinite(c) ? report.negative : report.infinite);
     }
-  if (report.total() == 0) return report;
 
   // All NaN texels are filled from the original neighbours before any is replaced.
   std::vector<std::pair<size_t, Rgb>> filled;
@@ -196,9 +179,7 @@ RepairReport repair(Image& image, bool wrapX) {
                             meanOfNeighbours(image, x, y, wrapX, largest));
   for (const auto& [index, color] : filled)
     image.setRgb(int(index % image.width), int(index / image.width), color);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      image.setRgb(x, y, repairChannels(image.rgb(x, y), largest));
+  recolor(image, [&](const Rgb& c) { return repairChannels(c, largest); });
   return report;
 }
 

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <vector>
 
 #include "base/error.h"
@@ -20,13 +19,35 @@ constexpr std::string_view kFisheye = "fisheye";
 struct NamedProjection {
   std::string_view name;
   FisheyeProjection projection;
-  double largestFieldOfView;  // degrees
+  double largestFieldOfView;                                // degrees
+  double (*radius)(double angle), (*angle)(double radius);  // radius at a focal length of 1
+  double (*jacobian)(double half, double angle);  // sin(t) (dt/dr) / r, with r = 1 at half
 };
+
+double squared(double x) { return x * x; }
+
+// In the order of FisheyeProjection.
 constexpr std::array<NamedProjection, 4> kProjections{
-    {{"equidistant", FisheyeProjection::Equidistant, 360},
-     {"equisolid", FisheyeProjection::Equisolid, 360},
-     {"orthographic", FisheyeProjection::Orthographic, 180},
-     {"stereographic", FisheyeProjection::Stereographic, 300}}};
+    {{"equidistant", FisheyeProjection::Equidistant, 360,  //
+      [](double t) { return t; }, [](double r) { return r; },
+      [](double h, double t) { return h * h * (t > 0 ? std::sin(t) / t : 1); }},
+     {"equisolid", FisheyeProjection::Equisolid, 360,  //
+      [](double t) { return std::sin(0.5 * t); }, [](double r) { return 2 * std::asin(r); },
+      [](double h, double) { return 4 * std::sin(0.5 * h) * std::sin(0.5 * h); }},
+     {"orthographic", FisheyeProjection::Orthographic, 180,
+      // The sine falls again behind the lens: its reflection at 1 goes on rising.
+      [](double t) { return t <= 0.5 * kPiD ? std::sin(t) : 2 - std::sin(t); },
+      [](double r) { return std::asin(r); },
+      [](double h, double t) { return squared(std::sin(h)) / std::cos(t); }},
+     {"stereographic", FisheyeProjection::Stereographic, 300,  //
+      [](double t) { return std::tan(0.5 * t); }, [](double r) { return 2 * std::atan(r); },
+      [](double h, double t) {
+        return squared(2 * std::tan(0.5 * h)) * std::pow(std::cos(0.5 * t), 4);
+      }}}};
+
+const NamedProjection& projectionOf(FisheyeProjection projection) {
+  return kProjections[size_t(projection)];
+}
 
 const NamedProjection& projectionNamed(std::string_view name, std::string_view location) {
   std::vector<std::string_view> known;
@@ -48,61 +69,19 @@ double Fisheye::solidAngle() const {
 }
 
 double Fisheye::radius(double t) const {
-  const double h = halfAngle();
-  switch (projection) {
-    case FisheyeProjection::Equidistant:
-      return t / h;
-    case FisheyeProjection::Equisolid:
-      return std::sin(0.5 * t) / std::sin(0.5 * h);
-    case FisheyeProjection::Orthographic:
-      // The sine falls again behind the lens: its reflection at 1 goes on rising.
-      return (t <= 0.5 * kPiD ? std::sin(t) : 2 - std::sin(t)) / std::sin(h);
-    case FisheyeProjection::Stereographic:
-      return std::tan(0.5 * t) / std::tan(0.5 * h);
-  }
-  return 0;
+  return projectionOf(projection).radius(t) / projectionOf(projection).radius(halfAngle());
 }
 
 double Fisheye::angle(double r) const {
-  const double h = halfAngle();
-  switch (projection) {
-    case FisheyeProjection::Equidistant:
-      return h * r;
-    case FisheyeProjection::Equisolid:
-      return 2 * std::asin(std::sin(0.5 * h) * r);
-    case FisheyeProjection::Orthographic:
-      return std::asin(std::sin(h) * r);
-    case FisheyeProjection::Stereographic:
-      return 2 * std::atan(std::tan(0.5 * h) * r);
-  }
-  return 0;
+  return projectionOf(projection).angle(projectionOf(projection).radius(halfAngle()) * r);
 }
 
-// sin(t) (dt/dr) / r.
 double Fisheye::solidAngleJacobian(double r) const {
-  const double h = halfAngle(), t = angle(r);
-  switch (projection) {
-    case FisheyeProjection::Equidistant:
-      return h * h * (t > 0 ? std::sin(t) / t : 1);
-    case FisheyeProjection::Equisolid: {
-      const double sine = std::sin(0.5 * h);
-      return 4 * sine * sine;
-    }
-    case FisheyeProjection::Orthographic: {
-      const double sine = std::sin(h);
-      return sine * sine / std::cos(t);
-    }
-    case FisheyeProjection::Stereographic: {
-      const double tangent = 2 * std::tan(0.5 * h), cosine = std::cos(0.5 * t);
-      return tangent * tangent * std::pow(cosine, 4);
-    }
-  }
-  return 0;
+  return projectionOf(projection).jacobian(halfAngle(), angle(r));
 }
 
 std::string fisheyeName(const Fisheye& lens) {
-  return fmt::format("{}:{}:{}", kFisheye, lens.fieldOfView,
-                     kProjections[size_t(lens.projection)].name);
+  return fmt::format("{}:{}:{}", kFisheye, lens.fieldOfView, projectionOf(lens.projection).name);
 }
 
 bool namesFisheye(std::string_view name) {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/irradiance.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "base/parallel.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {
@@ -29,6 +27,13 @@ dvec3 irradianceFrom(const Row& row, const PolarMoments& moments, const Horizon&
   const dvec3& n = horizon.normal();
   return max(moments.sine2 * (n.z * cosine - n.x * sine) + moments.sineCosine * n.y * one,
              dvec3(0));
+}
+
+// The azimuth a turned by b.
+Azimuth turned(const Azimuth& a, const Azimuth& b) {
+  double phi = a.phi + b.phi;
+  if (phi >= 2 * kPiD) phi -= 2 * kPiD;
+  return {phi, a.cos * b.cos - a.sin * b.sin, a.sin * b.cos + a.cos * b.sin};
 }
 
 }  // namespace
@@ -93,17 +98,6 @@ Image irradianceMap(const Image& latLong, const ImageSize& size, const Rotation&
 Image shIrradianceMap(const Image& latLong, const ImageSize& size, const Rotation& rotation) {
   return imageOf(size, shIrradiance(latLong, texelDirections(size, rotation)));
 }
-
-namespace {
-
-// The azimuth a turned by b.
-Azimuth turned(const Azimuth& a, const Azimuth& b) {
-  double phi = a.phi + b.phi;
-  if (phi >= 2 * kPiD) phi -= 2 * kPiD;
-  return {phi, a.cos * b.cos - a.sin * b.sin, a.sin * b.cos + a.cos * b.sin};
-}
-
-}  // namespace
 
 Horizon::Horizon(const vec3& normal)
     : normal_(normal), azimuth_{0, 1, 0}, horizontal_(std::hypot(normal_.x, normal_.z)) {

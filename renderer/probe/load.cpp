@@ -3,11 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <new>
-#include <vector>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -100,20 +97,15 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
   probe.fileHeight = image.height;
   if (const auto given = parseMapping(mapping, image.width, image.height, mappingLocation)) {
     probe.mapping = *given;
-  } else if (stated) {
-    probe.mapping = *stated;
-    probe.detected = true;
-    probe.reason = "its `envmap` attribute defines it";
-  } else if (named) {
-    probe.mapping = *named;
-    probe.detected = true;
-    probe.reason = "the file names it";
   } else {
-    DetectedMapping detected = detectMapping(image);
+    const DetectedMapping detected =
+        stated  ? DetectedMapping{*stated, "its `envmap` attribute defines it", true}
+        : named ? DetectedMapping{*named, "the file names it", true}
+                : detectMapping(image);
     probe.mapping = detected.mapping;
     probe.detected = true;
     probe.certain = detected.certain;
-    probe.reason = std::move(detected.reason);
+    probe.reason = detected.reason;
   }
 
   const bool isLatLong = probe.mapping == Mapping::LatLong;
@@ -128,6 +120,29 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
     probe.latLong = convert(image, probe.mapping, Mapping::LatLong, size);
   }
   return probe;
+}
+
+// Whether the image is black outside the mapping's valid area: at least 9 in 10 texels there are
+// below 1/1000 of the mean inside. (Debevec's probes have a copyright notice there.)
+bool isBlackOutside(const Image& image, Mapping mapping) {
+  double sumInside = 0;
+  size_t countInside = 0;
+  std::vector<float> outside;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const float brightness = maxComponent(image.rgb(x, y));
+      if (!std::isfinite(brightness)) continue;
+      if (showsDirection(mapping, {(x + 0.5) / image.width, (y + 0.5) / image.height})) {
+        sumInside += brightness;
+        ++countInside;
+      } else {
+        outside.push_back(brightness);
+      }
+    }
+  const double limit = 1e-3 * sumInside / double(std::max<size_t>(countInside, 1));
+  size_t black = 0;
+  for (const float brightness : outside) black += brightness <= limit;
+  return 10 * black >= 9 * outside.size();
 }
 
 }  // namespace
@@ -196,33 +211,6 @@ std::vector<std::string> lightWarnings(const LoadedProbe& probe,
                     path.string(), 100 * probe.fractionAtMaximum, probe.maximum)};
   return {};
 }
-
-namespace {
-
-// Whether the image is black outside the mapping's valid area: at least 9 in 10 texels there are
-// below 1/1000 of the mean inside. (Debevec's probes have a copyright notice there.)
-bool isBlackOutside(const Image& image, Mapping mapping) {
-  double sumInside = 0;
-  size_t countInside = 0;
-  std::vector<float> outside;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const float brightness = maxComponent(image.rgb(x, y));
-      if (!std::isfinite(brightness)) continue;
-      if (showsDirection(mapping, {(x + 0.5) / image.width, (y + 0.5) / image.height})) {
-        sumInside += brightness;
-        ++countInside;
-      } else {
-        outside.push_back(brightness);
-      }
-    }
-  const double limit = 1e-3 * sumInside / double(std::max<size_t>(countInside, 1));
-  size_t black = 0;
-  for (const float brightness : outside) black += brightness <= limit;
-  return 10 * black >= 9 * outside.size();
-}
-
-}  // namespace
 
 DetectedMapping detectMapping(const Image& image) {
   const int w = image.width, h = image.height;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/mapping.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <span>
 #include <vector>
 
 #include "base/error.h"
@@ -22,52 +19,42 @@ struct Face {
 constexpr dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 
 // The front face comes first, so that it gets directions on its edges.
-const std::array<Face, 6> kVerticalCross{{{1, 1, -kZ, kY},
-                                          {0, 1, -kX, kY},
-                                          {2, 1, kX, kY},
-                                          {1, 0, kY, kZ},
-                                          {1, 2, -kY, -kZ},
-                                          {1, 3, kZ, -kY}}};
-const std::array<Face, 6> kHorizontalCross{{{1, 1, -kZ, kY},
-                                            {0, 1, -kX, kY},
-                                            {2, 1, kX, kY},
-                                            {1, 0, kY, kZ},
-                                            {1, 2, -kY, -kZ},
-                                            {3, 1, kZ, kY}}};
-const std::array<Face, 6> kHorizontalStrip{{{0, 0, kX, kY},
-                                            {1, 0, -kX, kY},
-                                            {2, 0, kY, kZ},
-                                            {3, 0, -kY, -kZ},
-                                            {4, 0, kZ, kY},
-                                            {5, 0, -kZ, kY}}};
-const std::array<Face, 6> kVerticalStrip{{{0, 0, kX, kY},
-                                          {0, 1, -kX, kY},
-                                          {0, 2, kY, kZ},
-                                          {0, 3, -kY, -kZ},
-                                          {0, 4, kZ, kY},
-                                          {0, 5, -kZ, kY}}};
+std::array<Face, 6> crossFaces(const Face& back) {
+  return {
+      {{1, 1, -kZ, kY}, {0, 1, -kX, kY}, {2, 1, kX, kY}, {1, 0, kY, kZ}, {1, 2, -kY, -kZ}, back}};
+}
 
-const std::array<Face, 6> kGrid{{{0, 0, kX, kY},
-                                 {1, 0, -kX, kY},
-                                 {2, 0, kY, kZ},
-                                 {0, 1, -kY, -kZ},
-                                 {1, 1, kZ, kY},
-                                 {2, 1, -kZ, kY}}};
+std::array<Face, 6> stripFaces(int columns) {
+  const std::pair<dvec3, dvec3> kAxes[] = {{kX, kY},   {-kX, kY}, {kY, kZ},
+                                           {-kY, -kZ}, {kZ, kY},  {-kZ, kY}};
+  std::array<Face, 6> faces;
+  for (int i = 0; i < 6; ++i)
+    faces[size_t(i)] = {i % columns, i / columns, kAxes[i].first, kAxes[i].second};
+  return faces;
+}
 
 const std::array<Face, 6>& facesOf(Mapping mapping) {
-  switch (mapping.kind()) {
-    case Mapping::VerticalCross:
-      return kVerticalCross;
-    case Mapping::HorizontalCross:
-      return kHorizontalCross;
-    case Mapping::HorizontalStrip:
-      return kHorizontalStrip;
-    case Mapping::CubeGrid:
-      return kGrid;
-    default:
-      return kVerticalStrip;
-  }
+  static const std::array<Face, 6> kFaces[] = {crossFaces({1, 3, kZ, -kY}),
+                                               crossFaces({3, 1, kZ, kY}), stripFaces(6),
+                                               stripFaces(1), stripFaces(3)};
+  return kFaces[mapping.kind() - Mapping::VerticalCross];
 }
+
+struct KindOfMapping {
+  std::string_view name, shape;
+  Layout layout;
+};
+
+// In the order of Mapping::Kind.
+constexpr KindOfMapping kKinds[] = {{"lat-long", "of any shape", {1, 1}},
+                                    {"angular", "square", {1, 1}},
+                                    {"mirror-ball", "square", {1, 1}},
+                                    {"cube-cross", "3:4 or 4:3, of square faces", {3, 4}},
+                                    {"cube-cross", "3:4 or 4:3, of square faces", {4, 3}},
+                                    {"cube-strip", "6:1 or 1:6, of square faces", {6, 1}},
+                                    {"cube-strip", "6:1 or 1:6, of square faces", {1, 6}},
+                                    {"cube-3x2", "3:2, of square faces", {3, 2}},
+                                    {"fisheye", "square", {1, 1}}};
 
 dvec2 directionToCube(Mapping mapping, const dvec3& d) {
   const std::array<Face, 6>& faces = facesOf(mapping);
@@ -120,6 +107,19 @@ bool fits(Mapping mapping, int width, int height) {
   return width % columns == 0 && height % rows == 0 && width / columns == height / rows;
 }
 
+// The solid angle of the rectangle from (0, 0) to (x, y) in a plane at distance 1.
+double cornerSolidAngle(double x, double y) {
+  return std::atan2(x * y, std::sqrt(1 + x * x + y * y));
+}
+
+// The solid angle of a texel of a cube's face with `side` texels.
+double faceTexelSolidAngle(int x, int y, int side) {
+  const auto at = [&](int column, int row) {
+    return cornerSolidAngle(2. * column / side - 1, 2. * row / side - 1);
+  };
+  return at(x + 1, y + 1) - at(x, y + 1) - at(x + 1, y) + at(x, y);
+}
+
 }  // namespace
 
 std::optional<Fisheye> Mapping::disc() const {
@@ -135,22 +135,7 @@ std::optional<Fisheye> Mapping::disc() const {
   }
 }
 
-Layout faceLayout(Mapping mapping) {
-  switch (mapping.kind()) {
-    case Mapping::VerticalCross:
-      return {3, 4};
-    case Mapping::HorizontalCross:
-      return {4, 3};
-    case Mapping::HorizontalStrip:
-      return {6, 1};
-    case Mapping::VerticalStrip:
-      return {1, 6};
-    case Mapping::CubeGrid:
-      return {3, 2};
-    default:
-      return {1, 1};
-  }
-}
+Layout faceLayout(Mapping mapping) { return kKinds[mapping.kind()].layout; }
 
 dvec2 directionToUv(Mapping mapping, const dvec3& d) {
   if (const std::optional<Fisheye> lens = mapping.disc()) return directionToDisc(*lens, d);
@@ -184,41 +169,12 @@ dvec3 texelDirection(const ImageSize& latLong, int x, int y) {
 }
 
 std::string mappingName(Mapping mapping) {
-  switch (mapping.kind()) {
-    case Mapping::LatLong:
-      return "lat-long";
-    case Mapping::AngularMap:
-      return "angular";
-    case Mapping::MirrorBall:
-      return "mirror-ball";
-    case Mapping::VerticalCross:
-    case Mapping::HorizontalCross:
-      return "cube-cross";
-    case Mapping::CubeGrid:
-      return "cube-3x2";
-    case Mapping::FisheyeDisc:
-      return fisheyeName(*mapping.disc());
-    default:
-      return "cube-strip";
-  }
+  if (mapping.kind() == Mapping::FisheyeDisc) return fisheyeName(*mapping.disc());
+  return std::string(kKinds[mapping.kind()].name);
 }
 
 std::optional<Mapping> parseMapping(std::string_view name, int width, int height,
                                     std::string_view location) {
-  struct Named {
-    std::string_view name, shape;
-    std::vector<Mapping> candidates;
-  };
-  static const std::vector<Named> kNamed{{"lat-long", "of any shape", {Mapping::LatLong}},
-                                         {"angular", "square", {Mapping::AngularMap}},
-                                         {"mirror-ball", "square", {Mapping::MirrorBall}},
-                                         {"cube-cross",
-                                          "3:4 or 4:3, of square faces",
-                                          {Mapping::VerticalCross, Mapping::HorizontalCross}},
-                                         {"cube-strip",
-                                          "6:1 or 1:6, of square faces",
-                                          {Mapping::HorizontalStrip, Mapping::VerticalStrip}},
-                                         {"cube-3x2", "3:2, of square faces", {Mapping::CubeGrid}}};
   if (name == "auto") return std::nullopt;
   if (namesFisheye(name)) {
     if (width != height)
@@ -228,15 +184,17 @@ std::optional<Mapping> parseMapping(std::string_view name, int width, int height
   }
 
   std::vector<std::string_view> known{"auto"};
-  for (const Named& named : kNamed) {
-    known.push_back(named.name);
+  std::string_view shape;
+  for (int kind = Mapping::LatLong; kind <= Mapping::FisheyeDisc; ++kind) {
+    const KindOfMapping& named = kKinds[kind];
+    if (named.name != known.back()) known.push_back(named.name);
     if (named.name != name) continue;
-    for (const Mapping mapping : named.candidates)
-      if (fits(mapping, width, height)) return mapping;
-    throwInput("{}: an image of {} x {} texels cannot be {}, which is {}", location, width, height,
-               name, named.shape);
+    if (fits(Mapping::Kind(kind), width, height)) return Mapping::Kind(kind);
+    shape = named.shape;
   }
-  known.push_back("fisheye");
+  if (!shape.empty())
+    throwInput("{}: an image of {} x {} texels cannot be {}, which is {}", location, width, height,
+               name, shape);
   throwInput("{}: unknown mapping `{}`; {}", location, name, didYouMean(name, known));
 }
 
@@ -249,6 +207,59 @@ Mapping parseMapping(std::string_view name, std::string_view location) {
       "{}: `{}` should be lat-long, angular, mirror-ball, cube-cross, cube-strip, cube-3x2 or "
       "fisheye[:FOV[:PROJECTION]]",
       location, name);
+}
+
+double texelSolidAngle(int row, int width, int height) {
+  // cos a - cos b = 2 sin((a + b)/2) sin((b - a)/2), without cancellation near the poles.
+  const double middle = kPiD * (row + 0.5) / height, half = 0.5 * kPiD / height;
+  return 2 * kPiD / width * 2 * std::sin(middle) * std::sin(half);
+}
+
+double solidAngleJacobian(Mapping mapping, const dvec2& uv) {
+  if (mapping == Mapping::LatLong) return 2 * kPiD * kPiD * std::sin(kPiD * uv.y);
+  if (const std::optional<Fisheye> lens = mapping.disc())
+    return 4 * lens->solidAngleJacobian(std::hypot(2 * uv.x - 1, 2 * uv.y - 1));
+  // A cube's face spans [-1, 1]^2 at distance 1: d(omega) = (1 + s^2 + t^2)^(-3/2) ds dt.
+  const auto [columns, rows] = faceLayout(mapping);
+  const double x = uv.x * columns, y = uv.y * rows;
+  const double s = 2 * (x - std::floor(x)) - 1, t = 2 * (y - std::floor(y)) - 1;
+  return 4 * columns * rows * std::pow(1 + s * s + t * t, -1.5);
+}
+
+TexelSolidAngles texelSolidAngles(Mapping mapping, const ImageSize& image) {
+  TexelSolidAngles angles{4 * kPiD, 0, 0};
+  const auto add = [&](double solidAngle, size_t texels) {
+    angles.min = std::min(angles.min, solidAngle);
+    angles.max = std::max(angles.max, solidAngle);
+    angles.texels += texels;
+  };
+  const auto [columns, rows] = faceLayout(mapping);
+  if (mapping == Mapping::LatLong) {
+    for (int y = 0; y < image.height; ++y)
+      add(texelSolidAngle(y, image.width, image.height), size_t(image.width));
+  } else if (columns * rows > 1) {
+    const int side = image.width / columns;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) add(faceTexelSolidAngle(x, y, side), 6);
+  } else {
+    const double area = 1 / (double(image.width) * image.height);
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const dvec2 uv((x + 0.5) / image.width, (y + 0.5) / image.height);
+        if (showsDirection(mapping, uv)) add(area * solidAngleJacobian(mapping, uv), 1);
+      }
+  }
+  return angles;
+}
+
+dvec3 meanRadiance(const Image& latLong) {
+  dvec3 sum(0);
+  for (int y = 0; y < latLong.height; ++y) {
+    dvec3 row(0);
+    for (int x = 0; x < latLong.width; ++x) row += dvec3(latLong.rgb(x, y));
+    sum += row * texelSolidAngle(y, latLong.width, latLong.height);
+  }
+  return sum / (4 * kPiD);
 }
 
 }  // namespace chromeball

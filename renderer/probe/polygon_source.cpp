@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/polygon_source.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 #include "probe/sun_extraction.h"
 
 namespace chromeball {
@@ -118,6 +115,13 @@ dvec3 luminanceOf(const std::array<dvec3, 3>& channels) {
   return 0.2126 * channels[0] + 0.7152 * channels[1] + 0.0722 * channels[2];
 }
 
+// Converts between positions in the file and in the map, for a map that was turned by 180 degrees
+// on loading.
+glm::dvec2 turned(const glm::dvec2& uv, const LoadedProbe& probe) {
+  if (!probe.turned) return uv;
+  return {uv.x < 0.5 ? uv.x + 0.5 : uv.x - 0.5, uv.y};
+}
+
 }  // namespace
 
 dvec3 PolygonSource::direction() const {
@@ -152,9 +156,8 @@ PolygonSource sourceOf(const Image& map, const SphericalPolygon& polygon) {
 PolygonExtraction extractPolygons(const Image& latLong,
                                   const std::vector<SphericalPolygon>& polygons) {
   PolygonExtraction result;
-  Image& rest = result.remainder = Image(latLong.width, latLong.height, 3);
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x) rest.setRgb(x, y, latLong.rgb(x, y));
+  Image& rest = result.remainder =
+      colorImage(latLong.width, latLong.height, [&](int x, int y) { return latLong.rgb(x, y); });
   for (const SphericalPolygon& polygon : polygons) {
     const std::vector<CoveredTexel> coverage = coverageOf(polygon, {rest.width, rest.height});
     const dvec3 fill = meanOfRim(rest, coverage);
@@ -164,17 +167,6 @@ PolygonExtraction extractPolygons(const Image& latLong,
   }
   return result;
 }
-
-namespace {
-
-// Converts between positions in the file and in the map, for a map that was turned by 180 degrees
-// on loading.
-glm::dvec2 turned(const glm::dvec2& uv, const LoadedProbe& probe) {
-  if (!probe.turned) return uv;
-  return {uv.x < 0.5 ? uv.x + 0.5 : uv.x - 0.5, uv.y};
-}
-
-}  // namespace
 
 SphericalPolygon polygonOf(const PolygonCorners& corners, const LoadedProbe& probe,
                            const std::string& location) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/prefiltered_probe.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "base/error.h"
@@ -28,33 +27,6 @@ Probe filtered(const Image& map, const Rotation& rotation, const ZonalKernel& ke
                const ImageSize& size) {
   return Probe(imageOf(size, convolve(map, kernel, texelDirections(size), kError)), rotation);
 }
-
-}  // namespace
-
-PrefilteredProbe::PrefilteredProbe(const Probe& probe, std::vector<float> roughnesses)
-    : probe_(probe),
-      diffuse_(filtered(probe.latLong(), probe.rotation(), ZonalKernel::phong(1), kDiffuseSize)) {
-  std::ranges::sort(roughnesses);
-  const Image map = probe.latLong();
-  for (const float roughness : roughnesses)
-    levels_.push_back({roughness, filtered(map, probe.rotation(), ZonalKernel::ggx(roughness),
-                                           sizeFor(roughness))});
-}
-
-Rgb PrefilteredProbe::radiance(const vec3& direction, float roughness) const {
-  size_t above = 0;
-  while (above < levels_.size() && levels_[above].roughness < roughness) ++above;
-  const bool isLast = above == levels_.size();
-  const float from = above == 0 ? 0 : levels_[above - 1].roughness;
-  const float to = isLast ? 1 : levels_[above].roughness;
-  const float t = (roughness - from) / (to - from);
-  Rgb sum(0);
-  if (t < 1) sum += (1 - t) * (above == 0 ? probe_ : levels_[above - 1].map).radiance(direction);
-  if (t > 0) sum += t * (isLast ? diffuse_ : levels_[above].map).radiance(direction);
-  return sum;
-}
-
-namespace {
 
 constexpr int kSmallestFace = 16;
 
@@ -92,6 +64,29 @@ Image convolvedFaces(const Image& latLong, int size, const ZonalKernel& kernel) 
 }
 
 }  // namespace
+
+PrefilteredProbe::PrefilteredProbe(const Probe& probe, std::vector<float> roughnesses)
+    : probe_(probe),
+      diffuse_(filtered(probe.latLong(), probe.rotation(), ZonalKernel::phong(1), kDiffuseSize)) {
+  std::ranges::sort(roughnesses);
+  const Image map = probe.latLong();
+  for (const float roughness : roughnesses)
+    levels_.push_back({roughness, filtered(map, probe.rotation(), ZonalKernel::ggx(roughness),
+                                           sizeFor(roughness))});
+}
+
+Rgb PrefilteredProbe::radiance(const vec3& direction, float roughness) const {
+  size_t above = 0;
+  while (above < levels_.size() && levels_[above].roughness < roughness) ++above;
+  const bool isLast = above == levels_.size();
+  const float from = above == 0 ? 0 : levels_[above - 1].roughness;
+  const float to = isLast ? 1 : levels_[above].roughness;
+  const float t = (roughness - from) / (to - from);
+  Rgb sum(0);
+  if (t < 1) sum += (1 - t) * (above == 0 ? probe_ : levels_[above - 1].map).radiance(direction);
+  if (t > 0) sum += t * (isLast ? diffuse_ : levels_[above].map).radiance(direction);
+  return sum;
+}
 
 MipRoughness parseMipRoughness(std::string_view text, std::string_view location) {
   if (text == "khronos") return MipRoughness::Khronos;

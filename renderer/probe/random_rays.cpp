@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 
 namespace chromeball {
 namespace {

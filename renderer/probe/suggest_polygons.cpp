@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/polygon_source.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
 
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 #include "probe/sun_extraction.h"
 
 namespace chromeball {
@@ -132,23 +129,18 @@ void divide(const Image& map, std::vector<PolygonCandidate>& candidates,
 std::vector<SphericalPolygon> suggestPolygons(const Image& latLong, int count) {
   constexpr double kContrast = 4;
   double mean = 0;
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x)
-      mean += luminance(latLong.rgb(x, y)) * texelSolidAngle(y, latLong.width, latLong.height) /
-              (4 * kPiD);
+  forTexels(latLong, [&](int, int, const Rgb& c, double solidAngle) {
+    mean += luminance(c) * solidAngle / (4 * kPiD);
+  });
   struct Region {
     std::vector<Texel> texels;
     double flux;
   };
   std::vector<Region> regions;
-  std::vector<bool> visited(size_t(latLong.width) * size_t(latLong.height));
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x) {
-      Region region{gatherRegion(latLong, {x, y}, kContrast * mean, visited), 0};
-      if (region.texels.empty()) continue;
-      centreOf(latLong, region.texels, region.flux);
-      regions.push_back(std::move(region));
-    }
+  for (std::vector<Texel>& texels : brightRegions(latLong, kContrast * mean)) {
+    Region& region = regions.emplace_back(Region{std::move(texels), 0});
+    centreOf(latLong, region.texels, region.flux);
+  }
   std::ranges::stable_sort(regions, std::greater(), &Region::flux);
   std::vector<PolygonCandidate> candidates;
   auto region = regions.begin();

@@ -1,39 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/sun_extraction.h"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe/synth.h"
 
 namespace chromeball {
 namespace {
 
 double sinOfRadius(const Sun& sun) { return std::sin(sun.angle * (kPiD / 360)); }
-
-}  // namespace
-
-glm::dvec3 Sun::radiance() const {
-  const double sine = sinOfRadius(*this);
-  return irradiance / (kPiD * sine * sine);
-}
-
-// Lagarde and de Rousiers, "Moving Frostbite to Physically Based Rendering" (2014), the function
-// illuminanceSphereOrDisk.
-glm::dvec3 Sun::irradianceOn(const glm::dvec3& normal) const {
-  const double cosine = glm::dot(normal, direction), sinRadius = sinOfRadius(*this);
-  if (cosine >= sinRadius) return irradiance * cosine;
-  if (cosine <= -sinRadius) return glm::dvec3(0);
-  const double square = sinRadius * sinRadius, x = std::sqrt(1 / square - 1);
-  const double sine = std::sqrt(1 - cosine * cosine);
-  const double y = std::clamp(-x * cosine / sine, -1.0, 1.0);
-  const double chord = sine * std::sqrt(1 - y * y);
-  const double seen = (cosine * std::acos(y) - x * chord) * square + std::atan(chord / x);
-  return irradiance * (seen / (kPiD * square));
-}
-
-namespace {
 
 constexpr double kContrast = 2000, kMinContrast = 10;  // times the mean luminance
 constexpr double kMinFraction = 0.01;                  // of the flux
@@ -81,15 +57,9 @@ Core coreOf(const Image& image, const std::vector<Texel>& region) {
 // The cores in order of decreasing flux, without regions too wide for a sun.
 std::vector<Core> findCores(const Image& image, double threshold) {
   const double maxRadius = std::max(kMaxCore, largestTexelSide(image));
-  std::vector<bool> visited(size_t(image.width) * image.height);
   std::vector<Core> cores;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const std::vector<Texel> region = gatherRegion(image, {x, y}, threshold, visited);
-      if (region.empty()) continue;
-      const Core core = coreOf(image, region);
-      if (core.radius <= maxRadius) cores.push_back(core);
-    }
+  for (const std::vector<Texel>& region : brightRegions(image, threshold))
+    if (const Core core = coreOf(image, region); core.radius <= maxRadius) cores.push_back(core);
   std::sort(cores.begin(), cores.end(),
             [](const Core& a, const Core& b) { return a.flux > b.flux; });
   return cores;
@@ -212,12 +182,30 @@ Sun discOf(const std::vector<Removed>& removed, int w, int h) {
 
 }  // namespace
 
+glm::dvec3 Sun::radiance() const {
+  const double sine = sinOfRadius(*this);
+  return irradiance / (kPiD * sine * sine);
+}
+
+// Lagarde and de Rousiers, "Moving Frostbite to Physically Based Rendering" (2014), the function
+// illuminanceSphereOrDisk.
+glm::dvec3 Sun::irradianceOn(const glm::dvec3& normal) const {
+  const double cosine = glm::dot(normal, direction), sinRadius = sinOfRadius(*this);
+  if (cosine >= sinRadius) return irradiance * cosine;
+  if (cosine <= -sinRadius) return glm::dvec3(0);
+  const double square = sinRadius * sinRadius, x = std::sqrt(1 / square - 1);
+  const double sine = std::sqrt(1 - cosine * cosine);
+  const double y = std::clamp(-x * cosine / sine, -1.0, 1.0);
+  const double chord = sine * std::sqrt(1 - y * y);
+  const double seen = (cosine * std::acos(y) - x * chord) * square + std::atan(chord / x);
+  return irradiance * (seen / (kPiD * square));
+}
+
 SunExtraction extractSuns(const Image& latLong) {
   const int w = latLong.width, h = latLong.height;
   SunExtraction result;
-  Image& remainder = result.remainder = Image(w, h, 3);
-  for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x) remainder.setRgb(x, y, latLong.rgb(x, y));
+  Image& remainder = result.remainder =
+      colorImage(w, h, [&](int x, int y) { return latLong.rgb(x, y); });
 
   const double mean = luminance(Rgb(meanRadiance(latLong)));
   const double sunRadius = 0.5 * kSunDiameter * kDegree;
@@ -242,8 +230,9 @@ SunExtraction extractSuns(const Image& latLong) {
   return result;
 }
 
-std::vector<Texel> gatherRegion(const Image& latLong, Texel start, double threshold,
-                                std::vector<bool>& visited) {
+std::vector<std::vector<Texel>> brightRegions(const Image& latLong, double threshold) {
+  std::vector<std::vector<Texel>> regions;
+  std::vector<bool> visited(size_t(latLong.width) * latLong.height);
   std::vector<Texel> region;
   const auto visit = [&](int x, int y) {
     x = (x + latLong.width) % latLong.width;
@@ -252,14 +241,17 @@ std::vector<Texel> gatherRegion(const Image& latLong, Texel start, double thresh
     visited[index] = true;
     region.push_back({x, y});
   };
-  visit(start.x, start.y);
-  for (size_t i = 0; i < region.size(); ++i) {
-    const Texel t = region[i];
-    for (int y = t.y - 1; y <= t.y + 1; ++y)
-      if (y >= 0 && y < latLong.height)
-        for (int dx = -1; dx <= 1; ++dx) visit(t.x + dx, y);
-  }
-  return region;
+  for (int startY = 0; startY < latLong.height; ++startY)
+    for (int startX = 0; startX < latLong.width; ++startX) {
+      visit(startX, startY);
+      for (size_t i = 0; i < region.size(); ++i) {
+        const Texel t = region[i];
+        for (int y = std::max(t.y - 1, 0); y <= std::min(t.y + 1, latLong.height - 1); ++y)
+          for (int dx = -1; dx <= 1; ++dx) visit(t.x + dx, y);
+      }
+      if (!region.empty()) regions.push_back(std::exchange(region, {}));
+    }
+  return regions;
 }
 
 }  // namespace chromeball

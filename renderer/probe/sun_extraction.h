@@ -48,10 +48,9 @@ struct Texel {
   int x, y;
 };
 
-// The texels with a luminance above `threshold` and not yet `visited` that are connected to `start`
-// by eight neighbours, across the seam too. A source that covers a pole fills the row there, which
-// connects it. Marks them as visited.
-std::vector<Texel> gatherRegion(const Image& latLong, Texel start, double threshold,
-                                std::vector<bool>& visited);
+// The regions of texels with a luminance above `threshold` that are connected by eight neighbours,
+// across the seam too, in the order of their first texels. A source that covers a pole fills the
+// row there, which connects it.
+std::vector<std::vector<Texel>> brightRegions(const Image& latLong, double threshold);
 
 }  // namespace chromeball

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/synth.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "base/error.h"
 #include "probe/convert.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {
@@ -43,10 +39,7 @@ struct SoftBox {
 }  // namespace
 
 Image constantProbe(const ImageSize& size, const Rgb& radiance) {
-  Image image(size.width, size.height, 3);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x) image.setRgb(x, y, radiance);
-  return image;
+  return colorImage(size.width, size.height, [&](int, int) { return radiance; });
 }
 
 Image oneHotProbe(const ImageSize& size, int x, int y, const Rgb& radiance) {

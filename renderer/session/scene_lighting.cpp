@@ -133,8 +133,7 @@ Probe probeOf(const RenderDescription& description, LoadedProbe& loaded) {
 
 Probe scaled(const Probe& probe, const Rgb& factor) {
   Image map = probe.latLong();
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x) map.setRgb(x, y, factor * map.rgb(x, y));
+  recolor(map, [&](const Rgb& c) { return factor * c; });
   return Probe(map, probe.rotation());
 }
 

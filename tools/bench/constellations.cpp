@@ -40,11 +40,11 @@ void placeLights(benchmark::State& state, const Table& table, Make make) {
 
 void medianCut300(benchmark::State& state) {
   placeLights(state, RegionTable(map()),
-              [](const auto& table) { return medianCut(table, kLights); });
+              [](const auto& table) { return table.lights(medianCutRegions(table, kLights)); });
 }
 void varianceCut300(benchmark::State& state) {
   placeLights(state, RegionTable(map()),
-              [](const auto& table) { return varianceCut(table, kLights); });
+              [](const auto& table) { return table.lights(varianceCutRegions(table, kLights)); });
 }
 void penrose300(benchmark::State& state) {
   placeLights(state, ImportanceTable(map()),
@@ -52,11 +52,11 @@ void penrose300(benchmark::State& state) {
 }
 void lightGen300(benchmark::State& state) {
   placeLights(state, TexelTable(map(), kCoarseCells),
-              [](const auto& table) { return lightGen(table, kLights, 1); });
+              [](const auto& table) { return lightGenClusters(table, kLights, 1).lights(); });
 }
 void kolligKeller300(benchmark::State& state) {
   placeLights(state, TexelTable(map(), kCoarseCells),
-              [](const auto& table) { return kolligKeller(table, kLights); });
+              [](const auto& table) { return kolligKellerClusters(table, kLights).lights(); });
 }
 void cubeGrid294(benchmark::State& state) {
   placeLights(state, TexelTable(map(), kFineCells),

@@ -21,10 +21,7 @@ Rgb toLinear(const Color8& color) {
 // `color` maps a texel's channels to its color.
 template <class Color>
 Image colored(const Image& layer, const Color& color) {
-  Image view(layer.width, layer.height, 3);
-  for (int y = 0; y < view.height; ++y)
-    for (int x = 0; x < view.width; ++x) view.setRgb(x, y, color(layer.at(x, y)));
-  return view;
+  return colorImage(layer.width, layer.height, [&](int x, int y) { return color(layer.at(x, y)); });
 }
 
 float maxFinite(const Image& layer, int channel) {

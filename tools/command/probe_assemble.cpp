@@ -13,7 +13,7 @@
 #include "probe/capture/assemble.h"
 #include "probe/capture/match_views.h"
 #include "probe/convert.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "progress_bar.h"
 
 namespace chromeball {

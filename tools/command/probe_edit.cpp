@@ -15,7 +15,7 @@
 #include "probe/convert.h"
 #include "probe/edit.h"
 #include "probe/load.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe_options.h"
 
 namespace chromeball {

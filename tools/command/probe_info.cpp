@@ -8,7 +8,7 @@
 #include "messages.h"
 #include "probe/info.h"
 #include "probe/load.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "probe_options.h"
 
 namespace chromeball {

@@ -9,7 +9,6 @@
 #include "image_files.h"
 #include "messages.h"
 #include "probe/edit.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "math/icosphere.h"
-#include "probe/solid_angle.h"
 #include "scene/surface.h"
 #include "trace/accel.h"
 

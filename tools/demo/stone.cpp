@@ -24,11 +24,9 @@ SolidTexture marble(Rgb ground, Rgb vein, float size) {
 }
 
 Image carve(const ImageSize& size, const Parametrisation& surface, const SolidTexture& texture) {
-  Image image(size.width, size.height, 3);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x)
-      image.setRgb(x, y, texture(vec3(surface((x + 0.5) / size.width, (y + 0.5) / size.height))));
-  return image;
+  return colorImage(size.width, size.height, [&](int x, int y) {
+    return texture(vec3(surface((x + 0.5) / size.width, (y + 0.5) / size.height)));
+  });
 }
 
 Image ashlar(int size, int columns, int rows, Rgb color) {

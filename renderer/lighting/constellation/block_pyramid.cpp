@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/block_pyramid.h"
 
-#include <algorithm>
 #include <numeric>
 
 #include "probe/mapping.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/cube_grid.h"
 
-#include <algorithm>
-
 #include "probe/mapping.h"
 
 namespace chromeball {
@@ -38,10 +36,6 @@ Constellation cubeGrid(const TexelTable& table, int n) {
   for (size_t i = 0; i < squares.size(); ++i)
     if (squares[i].weight > 0) lights.push_back(makeLight(middleOf(int(i), n), squares[i].power));
   return lights;
-}
-
-Constellation cubeGrid(const Image& latLong, int n) {
-  return cubeGrid(TexelTable(latLong, kFineCells), n);
 }
 
 Partition cubeGridRegions(const Image& latLong, int n) {

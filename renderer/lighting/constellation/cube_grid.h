@@ -3,7 +3,6 @@
 // faces of a cube.
 #pragma once
 
-#include "lighting/constellation/directional_light.h"
 #include "lighting/constellation/texel_table.h"
 
 namespace chromeball {
@@ -11,7 +10,6 @@ namespace chromeball {
 // n x n equal squares on each face, with a light at the centre of each square that is not black,
 // with the energy of all cells whose centroid projects into the square.
 Constellation cubeGrid(const TexelTable& table, int n);
-Constellation cubeGrid(const Image& latLong, int n);
 
 // The square of each texel's centre; 6 n^2 regions, lit or not.
 Partition cubeGridRegions(const Image& latLong, int n);

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/kollig_keller.h"
 
-#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <optional>
 
 #include "base/hash.h"
-#include "lighting/constellation/spherical_kmeans.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {
@@ -17,17 +14,6 @@ namespace {
 // Relative decrease of the objective at which iteration stops while lights are being added; each
 // added light decreases it far more.
 constexpr double kTolerance = 1e-3;
-
-SphericalKMeans cluster(const TexelTable& table, int count) {
-  SphericalKMeans kMeans(table);
-  count = std::min(count, kMeans.litCells());
-  for (int i = 0; i < count; ++i) {
-    kMeans.addCentreAtWorst();
-    kMeans.converge(kTolerance);
-  }
-  kMeans.converge(0);
-  return kMeans;
-}
 
 // A direction in the texel, uniform over its solid angle.
 dvec3 pointInTexel(const Image& latLong, int x, int y, const dvec2& random) {
@@ -37,57 +23,6 @@ dvec3 pointInTexel(const Image& latLong, int x, int y, const dvec2& random) {
   return *uvToDirection(Mapping::LatLong,
                         {(x + random.x) / latLong.width, std::acos(cosTheta) / kPiD});
 }
-
-template <class Visit>
-void forEachTexel(const Image& latLong, const Partition& partition, Visit visit) {
-  if (partition.regions == 0) return;
-  for (int y = 0; y < latLong.height; ++y) {
-    const double solidAngle = texelSolidAngle(y, latLong.width, latLong.height);
-    for (int x = 0; x < latLong.width; ++x)
-      visit(x, y, partition.label[size_t(y) * latLong.width + x],
-            dvec3(latLong.rgb(x, y)) * solidAngle);
-  }
-}
-
-}  // namespace
-
-Constellation kolligKeller(const TexelTable& table, int count) {
-  return cluster(table, count).lights();
-}
-
-Constellation kolligKeller(const Image& latLong, int count) {
-  return kolligKeller(TexelTable(latLong, kCoarseCells), count);
-}
-
-Partition kolligKellerRegions(const Image& latLong, int count) {
-  const TexelTable table(latLong, kCoarseCells);
-  return cluster(table, count).partition(latLong);
-}
-
-Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed) {
-  const Partition partition = kolligKellerRegions(latLong, count);
-  std::vector<dvec3> power(partition.regions, dvec3(0));
-  std::vector<double> weight(partition.regions), running(partition.regions);
-  forEachTexel(latLong, partition, [&](int, int, int region, const dvec3& texelPower) {
-    power[region] += texelPower;
-    weight[region] += luminance(texelPower);
-  });
-
-  // The light is in the texel at which the running sum of a region exceeds a random fraction of the
-  // region's weight.
-  Constellation lights(partition.regions);
-  forEachTexel(latLong, partition, [&](int x, int y, int region, const dvec3& texelPower) {
-    const auto random = [&](int i) { return toUnit(uint32_t(hash(seed, region, i))); };
-    const double target = random(0) * weight[region], before = running[region];
-    running[region] += luminance(texelPower);
-    if (before <= target && running[region] > target)
-      lights[region] =
-          makeLight(pointInTexel(latLong, x, y, {random(1), random(2)}), power[region]);
-  });
-  return lights;
-}
-
-namespace {
 
 constexpr int kStarts = 4;
 
@@ -106,8 +41,56 @@ std::vector<int> drawCells(const SphericalKMeans& kMeans, int count, uint64_t ke
   return cells;
 }
 
-// The clusters with the smallest objective.
-SphericalKMeans cluster(const TexelTable& table, int count, uint64_t seed) {
+}  // namespace
+
+SphericalKMeans kolligKellerClusters(const TexelTable& table, int count) {
+  SphericalKMeans kMeans(table);
+  count = std::min(count, kMeans.litCells());
+  for (int i = 0; i < count; ++i) {
+    kMeans.addCentreAtWorst();
+    kMeans.converge(kTolerance);
+  }
+  kMeans.converge(0);
+  return kMeans;
+}
+
+Partition kolligKellerRegions(const Image& latLong, int count) {
+  const TexelTable table(latLong, kCoarseCells);
+  return kolligKellerClusters(table, count).partition(latLong);
+}
+
+Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed) {
+  const Partition partition = kolligKellerRegions(latLong, count);
+  std::vector<dvec3> power(partition.regions, dvec3(0));
+  std::vector<double> weight(partition.regions), running(partition.regions);
+  if (partition.regions == 0) return {};
+  const auto regionAt = [&](int x, int y) {
+    return partition.label[size_t(y) * latLong.width + x];
+  };
+  forTexels(latLong, [&](int x, int y, const Rgb& radiance, double solidAngle) {
+    const int region = regionAt(x, y);
+    const dvec3 texelPower = dvec3(radiance) * solidAngle;
+    power[region] += texelPower;
+    weight[region] += luminance(texelPower);
+  });
+
+  // The light is in the texel at which the running sum of a region exceeds a random fraction of the
+  // region's weight.
+  Constellation lights(partition.regions);
+  forTexels(latLong, [&](int x, int y, const Rgb& radiance, double solidAngle) {
+    const int region = regionAt(x, y);
+    const dvec3 texelPower = dvec3(radiance) * solidAngle;
+    const auto random = [&](int i) { return toUnit(uint32_t(hash(seed, region, i))); };
+    const double target = random(0) * weight[region], before = running[region];
+    running[region] += luminance(texelPower);
+    if (before <= target && running[region] > target)
+      lights[region] =
+          makeLight(pointInTexel(latLong, x, y, {random(1), random(2)}), power[region]);
+  });
+  return lights;
+}
+
+SphericalKMeans lightGenClusters(const TexelTable& table, int count, uint64_t seed) {
   const SphericalKMeans empty(table);
   std::optional<SphericalKMeans> best;
   double minimum = std::numeric_limits<double>::infinity();
@@ -121,21 +104,6 @@ SphericalKMeans cluster(const TexelTable& table, int count, uint64_t seed) {
     best.emplace(std::move(kMeans));
   }
   return *best;
-}
-
-}  // namespace
-
-Constellation lightGen(const TexelTable& table, int count, uint64_t seed) {
-  return cluster(table, count, seed).lights();
-}
-
-Constellation lightGen(const Image& latLong, int count, uint64_t seed) {
-  return lightGen(TexelTable(latLong, kCoarseCells), count, seed);
-}
-
-Partition lightGenRegions(const Image& latLong, int count, uint64_t seed) {
-  const TexelTable table(latLong, kCoarseCells);
-  return cluster(table, count, seed).partition(latLong);
 }
 
 }  // namespace chromeball

@@ -5,9 +5,7 @@
 
 #include <cstdint>
 
-#include "image/image.h"
-#include "lighting/constellation/directional_light.h"
-#include "lighting/constellation/texel_table.h"
+#include "lighting/constellation/spherical_kmeans.h"
 
 namespace chromeball {
 
@@ -16,10 +14,9 @@ namespace chromeball {
 // lights move by Lloyd's iteration until a step gains less than a thousandth, after the last light
 // to convergence. Deterministic. From about 32 lights on the error is less than lightgen's; with
 // fewer, lightgen's four random starts are sometimes better by a few percent.
-Constellation kolligKeller(const TexelTable& table, int count);
-Constellation kolligKeller(const Image& latLong, int count);
+SphericalKMeans kolligKellerClusters(const TexelTable& table, int count);
 
-// The regions of those lights. Black cells belong to the nearest light; a black map has no region.
+// The regions of its lights in a coarse table of the map.
 Partition kolligKellerRegions(const Image& latLong, int count);
 
 // `kollig-keller-strata` (the same paper, against aliasing): each light has a random direction in
@@ -28,15 +25,9 @@ Partition kolligKellerRegions(const Image& latLong, int count);
 Constellation kolligKellerStrata(const Image& latLong, int count, uint64_t seed);
 
 // `lightgen` (Cohen and Debevec, HDRShop plug-in, 2001; HDRI book, section 9.6.2): K-means on the
-// sphere from random starts.
-
-// Lights start at `count` different cells, drawn with probability proportional to luminance, and
-// move by Lloyd's iteration to convergence. The result is the one with the smallest objective
-// (spherical_kmeans.h) out of four starts.
-Constellation lightGen(const TexelTable& table, int count, uint64_t seed);
-Constellation lightGen(const Image& latLong, int count, uint64_t seed);
-
-// The regions of those lights. Black cells belong to the nearest light; a black map has no region.
-Partition lightGenRegions(const Image& latLong, int count, uint64_t seed);
+// sphere from random starts. Lights start at `count` different cells, drawn with probability
+// proportional to luminance, and move by Lloyd's iteration to convergence. The result is the one
+// with the smallest objective (spherical_kmeans.h) out of four starts.
+SphericalKMeans lightGenClusters(const TexelTable& table, int count, uint64_t seed);
 
 }  // namespace chromeball

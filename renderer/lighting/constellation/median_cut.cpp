@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/median_cut.h"
 
-#include <algorithm>
-#include <limits>
+#include <functional>
 #include <numeric>
 
 namespace chromeball {
@@ -29,8 +28,8 @@ bool isWide(const RegionTable& table, const Region& r) {
   return 2 * (last.x - first.x) * shrinking > last.y - first.y;
 }
 
-}  // namespace
-
+// The two parts of a region with two or more lit cells. Sides and energies are in the table's
+// measure.
 std::pair<Region, Region> cutInHalf(const RegionTable& table, const Region& r) {
   const double whole = table.moment(r).w;
   if (isWide(table, r))
@@ -42,77 +41,22 @@ std::pair<Region, Region> cutInHalf(const RegionTable& table, const Region& r) {
                   }));
 }
 
-std::vector<Region> medianCutRegions(const RegionTable& table, int count) {
-  return subdivide(
-      table, count, [&](const Region& r) { return table.moment(r).w; },
-      [&](const Region& r) { return cutInHalf(table, r); });
-}
-
-Constellation medianCut(const RegionTable& table, int count) {
-  return table.lights(medianCutRegions(table, count));
-}
-
-Constellation medianCut(const Image& latLong, int count) {
-  return medianCut(RegionTable(latLong), count);
-}
-
-Partition medianCutPartition(const Image& latLong, int count) {
-  const RegionTable table(latLong);
-  return table.partition(latLong, medianCutRegions(table, count));
-}
-
-namespace {
-
 // Indices of the regions, in order of descending energy.
 std::vector<int> byEnergy(const RegionTable& table, const std::vector<Region>& regions) {
-  std::vector<double> energy;
-  for (const Region& r : regions) energy.push_back(table.moment(r).w);
   std::vector<int> order(regions.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return energy[a] > energy[b]; });
+  std::ranges::stable_sort(order, std::greater(),
+                           [&](int i) { return table.moment(regions[i]).w; });
   return order;
 }
-
-}  // namespace
-
-std::vector<Region> levelCutRegions(const RegionTable& table, const LevelCut& cut) {
-  const Region whole{0, 0, table.texels().width(), table.texels().height()};
-  if (table.litCells(whole) == 0) return {};
-  std::vector<Region> regions{whole};
-  bool cuttable = true;
-  for (int level = 0; level < cut.levels && cuttable; ++level) {
-    cuttable = false;
-    for (const int index : byEnergy(table, regions)) {
-      if (int(regions.size()) >= cut.count) return regions;
-      if (table.litCells(regions[index]) < 2) continue;
-      const auto [first, second] = cutInHalf(table, regions[index]);
-      cuttable = true;
-      const bool firstIsLit = table.litCells(first) > 0;
-      regions[index] = firstIsLit ? first : second;
-      if (firstIsLit && table.litCells(second) > 0) regions.push_back(second);
-    }
-  }
-  return regions;
-}
-
-Constellation levelCut(const Image& latLong, const LevelCut& cut) {
-  const RegionTable table(latLong, cut.measure);
-  return table.lights(levelCutRegions(table, cut), cut.place);
-}
-
-Partition levelCutPartition(const Image& latLong, const LevelCut& cut) {
-  const RegionTable table(latLong, cut.measure);
-  return table.partition(latLong, levelCutRegions(table, cut));
-}
-
-namespace {
 
 double variance(const dvec4& moment) {
   const dvec3 m(moment);
   return moment.w > 0 ? std::fmax(moment.w - glm::dot(m, m) / moment.w, 0.0) : 0;
 }
 
-std::pair<Region, Region> cut(const RegionTable& table, const Region& r) {
+// The two parts of a region whose total variance is least.
+std::pair<Region, Region> cutByVariance(const RegionTable& table, const Region& r) {
   const dvec4 whole = table.moment(r);
   std::pair<Region, Region> best;
   double minimum = std::numeric_limits<double>::infinity();
@@ -128,23 +72,36 @@ std::pair<Region, Region> cut(const RegionTable& table, const Region& r) {
 
 }  // namespace
 
+std::vector<Region> medianCutRegions(const RegionTable& table, int count) {
+  return subdivide(
+      table, count, [&](const Region& r) { return table.moment(r).w; },
+      [&](const Region& r) { return cutInHalf(table, r); });
+}
+
+std::vector<Region> levelCutRegions(const RegionTable& table, int levels, int count) {
+  const Region whole{0, 0, table.texels().width(), table.texels().height()};
+  if (table.litCells(whole) == 0) return {};
+  std::vector<Region> regions{whole};
+  bool cuttable = true;
+  for (int level = 0; level < levels && cuttable; ++level) {
+    cuttable = false;
+    for (const int index : byEnergy(table, regions)) {
+      if (int(regions.size()) >= count) return regions;
+      if (table.litCells(regions[index]) < 2) continue;
+      const auto [first, second] = cutInHalf(table, regions[index]);
+      cuttable = true;
+      const bool firstIsLit = table.litCells(first) > 0;
+      regions[index] = firstIsLit ? first : second;
+      if (firstIsLit && table.litCells(second) > 0) regions.push_back(second);
+    }
+  }
+  return regions;
+}
+
 std::vector<Region> varianceCutRegions(const RegionTable& table, int count) {
   return subdivide(
       table, count, [&](const Region& r) { return variance(table.moment(r)); },
-      [&](const Region& r) { return cut(table, r); });
-}
-
-Constellation varianceCut(const RegionTable& table, int count) {
-  return table.lights(varianceCutRegions(table, count));
-}
-
-Constellation varianceCut(const Image& latLong, int count) {
-  return varianceCut(RegionTable(latLong), count);
-}
-
-Partition varianceCutPartition(const Image& latLong, int count) {
-  const RegionTable table(latLong);
-  return table.partition(latLong, varianceCutRegions(table, count));
+      [&](const Region& r) { return cutByVariance(table, r); });
 }
 
 }  // namespace chromeball

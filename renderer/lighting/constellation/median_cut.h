@@ -15,31 +15,14 @@ namespace chromeball {
 // letter). A region's light is at the energy centroid of its directions. No region crosses the seam
 // of the map, so the lights depend on the position of the seam.
 std::vector<Region> medianCutRegions(const RegionTable& table, int count);
-Constellation medianCut(const RegionTable& table, int count);
-Constellation medianCut(const Image& latLong, int count);
-Partition medianCutPartition(const Image& latLong, int count);
-
-// The two parts of a region with two or more lit cells. Sides and energies are in the table's
-// measure.
-std::pair<Region, Region> cutInHalf(const RegionTable& table, const Region& r);
 
 // `median-cut-centre`, `median-cut-flat`, and median cut by levels: the variants that the HDRI book
 // (section 9.6.2) and Madsen and Laursen (2007, section 4.1) describe.
-
-// All regions are cut (median_cut.h) before any of their parts: after K levels there are 2^K. Black
-// margins stay in their regions, which matters for centres.
-struct LevelCut {
-  RegionMeasure measure = RegionMeasure::SolidAngle;
-  LightPlace place = LightPlace::Centroid;
-  int levels = std::numeric_limits<int>::max();  // maximum
-  int count = 64;                                // of regions, maximum; on the last level those
-                                                 // with the highest energy are cut
-};
-
-// A part without light is dropped; a region of a single lit cell is not cut.
-std::vector<Region> levelCutRegions(const RegionTable& table, const LevelCut& cut);
-Constellation levelCut(const Image& latLong, const LevelCut& cut);
-Partition levelCutPartition(const Image& latLong, const LevelCut& cut);
+// All regions are cut (median_cut.h) before any of their parts: after K levels there are 2^K, but
+// at most `count`: on the last level those with the highest energy are cut. Black margins stay in
+// their regions, which matters for centres. A part without light is dropped; a region of a single
+// lit cell is not cut.
+std::vector<Region> levelCutRegions(const RegionTable& table, int levels, int count);
 
 // `variance-cut` (Viriyothai and Debevec, "Variance Minimization Light Probe Sampling", SIGGRAPH
 // posters 2009): regions of small variance.
@@ -49,8 +32,5 @@ Partition levelCutPartition(const Image& latLong, const LevelCut& cut);
 // directions the variance is weight - |moment|^2 / weight, so each candidate takes four look-ups.
 // As with median-cut, no region crosses the seam of the map.
 std::vector<Region> varianceCutRegions(const RegionTable& table, int count);
-Constellation varianceCut(const RegionTable& table, int count);
-Constellation varianceCut(const Image& latLong, int count);
-Partition varianceCutPartition(const Image& latLong, int count);
 
 }  // namespace chromeball

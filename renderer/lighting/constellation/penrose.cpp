@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/penrose.h"
 
-#include <algorithm>
 #include <queue>
 
 #include "base/hash.h"
@@ -199,12 +198,7 @@ Constellation penrose(const ImportanceTable& table, int count, uint64_t seed) {
   return lights;
 }
 
-Constellation penrose(const Image& latLong, int count, uint64_t seed) {
-  return penrose(ImportanceTable(latLong), count, seed);
-}
-
-std::vector<MapLine> penroseTiling(const Image& latLong, int count, uint64_t seed) {
-  const ImportanceTable table(latLong);
+std::vector<MapLine> penroseTiling(const ImportanceTable& table, int count, uint64_t seed) {
   if (!(table.texels().total().weight > 0)) return {};
   Search search(table, seed);
   for (int i = 0; i < count; ++i) search.next();

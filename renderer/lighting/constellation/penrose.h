@@ -48,10 +48,9 @@ class ImportanceTable {
 // correction tables, which improve the spectrum, are omitted. The minimum distance does not hold
 // across the seam and the poles.
 Constellation penrose(const ImportanceTable& table, int count, uint64_t seed);
-Constellation penrose(const Image& latLong, int count, uint64_t seed);
 
 // The sides of the tiling's rhombs, as far as they are subdivided to find those lights (HDRI book,
 // Fig. 9.35 d); next to finer rhombs, of half rhombs. Ends may be outside the map.
-std::vector<MapLine> penroseTiling(const Image& latLong, int count, uint64_t seed);
+std::vector<MapLine> penroseTiling(const ImportanceTable& table, int count, uint64_t seed);
 
 }  // namespace chromeball

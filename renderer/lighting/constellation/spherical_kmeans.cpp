@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/spherical_kmeans.h"
 
-#include <algorithm>
-
 #include "base/progress.h"
 
 namespace chromeball {
@@ -153,8 +151,10 @@ double SphericalKMeans::objective() const {
   return sum;
 }
 
-std::vector<int> SphericalKMeans::labels() const {
-  std::vector<int> labels(table_.cells().size(), -1);
+Partition SphericalKMeans::partition(const Image& latLong) const {
+  Partition partition{centres(), {}};
+  if (centres() == 0) return partition;
+  std::vector<int> labels(table_.cells().size(), -1);  // of the cells, lit or not
   for (int i = 0; i < litCells(); ++i) labels[points_[i].cell] = label_[i];
   for (size_t cell = 0; cell < labels.size(); ++cell) {
     if (labels[cell] >= 0) continue;
@@ -166,17 +166,10 @@ std::vector<int> SphericalKMeans::labels() const {
       if (cosine > nearest) nearest = cosine, labels[cell] = i;
     }
   }
-  return labels;
-}
-
-Partition SphericalKMeans::partition(const Image& latLong) const {
-  Partition partition{centres(), {}};
-  if (centres() == 0) return partition;
-  const std::vector<int> cellLabels = labels();
   partition.label.reserve(size_t(latLong.width) * latLong.height);
   for (int y = 0; y < latLong.height; ++y)
     for (int x = 0; x < latLong.width; ++x)
-      partition.label.push_back(uint16_t(cellLabels[table_.cellOfTexel(x, y)]));
+      partition.label.push_back(uint16_t(labels[table_.cellOfTexel(x, y)]));
   return partition;
 }
 

@@ -36,10 +36,10 @@ class SphericalKMeans {
 
   double objective() const;  // after the last assignment
   int centres() const { return int(centres_.size()); }
-  Constellation lights() const;     // one for each centre
-  std::vector<int> labels() const;  // the centre of each cell of the table, lit or not
+  Constellation lights() const;  // one for each centre
 
-  // The nearest centre of each texel of the table's map; no region without centres.
+  // The centre of each texel of the table's map: of a black cell the nearest; no region without
+  // centres.
   Partition partition(const Image& latLong) const;
 
  private:

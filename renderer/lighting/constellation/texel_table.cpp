@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/constellation/texel_table.h"
 
-#include <algorithm>
 #include <limits>
 #include <queue>
 
@@ -10,7 +9,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 namespace {
@@ -30,6 +28,20 @@ const Image& checked(const Image& latLong) {
 }
 
 bool isValid(const Rgb& c) { return isFinite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0; }
+
+// Smallest x in [low, high] for which the predicate holds, by bisection. Above it the predicate
+// holds everywhere; it holds at `high`.
+template <class Predicate>
+int firstWhere(int low, int high, Predicate holds) {
+  while (low < high) {
+    const int middle = low + (high - low) / 2;
+    if (holds(middle))
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return low;
+}
 
 }  // namespace
 
@@ -91,24 +103,6 @@ glm::ivec2 TexelTable::cellAt(const dvec2& uv) const {
 dvec3 TexelTable::direction(double x, double y) const {
   return *uvToDirection(Mapping::LatLong, uv(x, y));
 }
-
-namespace {
-
-// Smallest x in [low, high] for which the predicate holds, by bisection. Above it the predicate
-// holds everywhere; it holds at `high`.
-template <class Predicate>
-int firstWhere(int low, int high, Predicate holds) {
-  while (low < high) {
-    const int middle = low + (high - low) / 2;
-    if (holds(middle))
-      high = middle;
-    else
-      low = middle + 1;
-  }
-  return low;
-}
-
-}  // namespace
 
 RegionTable::RegionTable(const Image& latLong, RegionMeasure measure)
     : texels_(latLong, kFineCells),

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
-
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json.h"
@@ -96,6 +94,18 @@ std::string formatCsv(const LightRig& rig) {
   return result;
 }
 
+struct NamedFormat {
+  std::string_view name, extension;
+  LightFormat format;
+  std::string (*text)(const LightRig&);
+};
+
+// In the order of LightFormat.
+constexpr NamedFormat kFormats[] = {{"json", ".json", LightFormat::Json, formatJson},
+                                    {"gltf", ".gltf", LightFormat::Gltf, formatGltf},
+                                    {"csv", ".csv", LightFormat::Csv, formatCsv},
+                                    {"opengl", ".h", LightFormat::OpenGl, formatOpenGl}};
+
 }  // namespace
 
 double projectedSolidAngle(double degrees) {
@@ -105,22 +115,15 @@ double projectedSolidAngle(double degrees) {
 
 LightFormat lightFormat(const std::filesystem::path& path, std::string_view name,
                         std::string_view location) {
-  static const std::map<std::string_view, LightFormat> kNames{{"json", LightFormat::Json},
-                                                              {"gltf", LightFormat::Gltf},
-                                                              {"csv", LightFormat::Csv},
-                                                              {"opengl", LightFormat::OpenGl}};
-  if (!name.empty()) {
-    const auto format = kNames.find(name);
-    if (format != kNames.end()) return format->second;
-    throwInput("{}: unknown format `{}`; {}", location, name,
-               didYouMean(name, {"json", "gltf", "csv", "opengl"}));
+  std::vector<std::string_view> names;
+  for (const NamedFormat& format : kFormats) {
+    if (name.empty() ? path.extension() == format.extension : name == format.name)
+      return format.format;
+    names.push_back(format.name);
   }
-  const std::string extension = path.extension().string();
-  if (extension == ".h") return LightFormat::OpenGl;
-  const auto format = kNames.find(std::string_view(extension).substr(extension.empty() ? 0 : 1));
-  if (format == kNames.end() || format->second == LightFormat::OpenGl)
+  if (name.empty())
     throwInput("{}: the name should end in .json, .gltf, .csv or .h", path.string());
-  return format->second;
+  throwInput("{}: unknown format `{}`; {}", location, name, didYouMean(name, names));
 }
 
 void writeLights(const std::filesystem::path& path, const LightRig& rig, LightFormat format) {
@@ -129,19 +132,7 @@ void writeLights(const std::filesystem::path& path, const LightRig& rig, LightFo
         (light.angle > 0 && !isFinite(radianceOf(light))))
       throwRun("{}: a light of `{}` is not finite: the probe is too bright", path.string(),
                rig.method);
-  const auto contents = [&] {
-    switch (format) {
-      case LightFormat::Json:
-        return formatJson(rig);
-      case LightFormat::Gltf:
-        return formatGltf(rig);
-      case LightFormat::Csv:
-        return formatCsv(rig);
-      case LightFormat::OpenGl:
-        break;
-    }
-    return formatOpenGl(rig);
-  }();
+  const std::string contents = kFormats[size_t(format)].text(rig);
   writeFile(path, {reinterpret_cast<const uint8_t*>(contents.data()), contents.size()});
 }
 

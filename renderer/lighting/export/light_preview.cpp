@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/export/light_preview.h"
 
-#include <algorithm>
-
 #include "base/parallel.h"
 #include "image/tonemap.h"
 #include "math/icosphere.h"

@@ -24,7 +24,7 @@ Image lightPreview(const Image& latLong, const Constellation& lights, const Ligh
 // Irradiance, W/m^2, on the faces of an icosphere, in the order of icosphereNormals().
 struct IrradianceSpheres {
   int subdivisions = 5;
-  std::vector<dvec3> probe, lights;
+  std::vector<glm::dvec3> probe, lights;
   std::optional<Rgb> ambient;  // radiance from all directions, part of `lights`
 };
 

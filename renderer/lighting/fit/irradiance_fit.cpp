@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/fit/irradiance_fit.h"
 
-#include <algorithm>
-
 #include "base/error.h"
 #include "base/parallel.h"
 #include "lighting/fit/light_descent.h"
 #include "lighting/fit/radiance_points.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 
 namespace chromeball {
 namespace {
@@ -138,30 +136,6 @@ class Search {
   std::vector<FittedLights> best_;
 };
 
-// The error of fits to a probe.
-class Measure {
- public:
-  explicit Measure(const Image& latLong)
-      : normals_(icosphereNormals(5)), irradiance_(exactIrradiance(latLong, normals_)) {}
-
-  // `lights` were fitted to the probe divided by `level`.
-  IrradianceFit operator()(const FittedLights& lights, double level) const {
-    IrradianceFit fit;
-    for (size_t i = 0; i < lights.directions.size(); ++i)
-      fit.lights.push_back({vec3(lights.directions[i]), Rgb(lights.irradiances[i] * level)});
-    fit.ambient = Rgb(lights.ambient * level);
-    const LightError error =
-        lightError(irradianceOf(fit.lights, fit.ambient, normals_), irradiance_);
-    fit.meanError = error.mean;
-    fit.maxError = error.max;
-    return fit;
-  }
-
- private:
-  std::vector<vec3> normals_;
-  std::vector<dvec3> irradiance_;
-};
-
 }  // namespace
 
 IrradianceFit fitIrradiance(const Image& latLong, const FitOptions& options) {
@@ -170,16 +144,29 @@ IrradianceFit fitIrradiance(const Image& latLong, const FitOptions& options) {
   const dvec3 mean = meanRadiance(latLong);
   // The scale of a black probe is arbitrary.
   const double level = mean == dvec3(0) ? 1 : (mean.x + mean.y + mean.z) / 3;
-  const Measure measure(latLong);
+  const std::vector<vec3> normals = icosphereNormals(5);
+  const std::vector<dvec3> irradiance = exactIrradiance(latLong, normals);
+  // Lights that were fitted to the probe divided by `level`, and their error.
+  const auto measured = [&](const FittedLights& lights) {
+    IrradianceFit fit;
+    for (size_t i = 0; i < lights.directions.size(); ++i)
+      fit.lights.push_back({vec3(lights.directions[i]), Rgb(lights.irradiances[i] * level)});
+    fit.ambient = Rgb(lights.ambient * level);
+    const LightError error = lightError(irradianceOf(fit.lights, fit.ambient, normals), irradiance);
+    fit.meanError = error.mean;
+    fit.maxError = error.max;
+    return fit;
+  };
+
   Search search(latLong, 1 / level, options.ambient);
-  IrradianceFit best = measure(search.best().front(), level);
+  IrradianceFit best = measured(search.best().front());
   int count = 0;
   while (count < limit &&
          !(options.maxErrorPercent && best.meanError <= *options.maxErrorPercent)) {
     ++count;
     search.grow();
     for (const FittedLights& lights : search.best()) {
-      IrradianceFit fit = measure(lights, level);
+      IrradianceFit fit = measured(lights);
       if (fit.meanError < best.meanError) best = std::move(fit);
     }
   }

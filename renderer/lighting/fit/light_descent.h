@@ -2,7 +2,6 @@
 // Optimises directional lights: the colours for given directions, and the directions by descent.
 #pragma once
 
-#include <cmath>
 #include <span>
 #include <vector>
 

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/fit/radiance_points.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "probe/solid_angle.h"
-
 namespace chromeball {
 namespace {
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/align.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/error.h"
 #include "base/parallel.h"
 #include "math/cdf.h"
@@ -65,10 +62,9 @@ double residual(double correlation) { return 1 - correlation * std::max(correlat
 double interpolationResidual(const Image& map) {
   const Rotation turn = Rotation::ofAngles({50, 40, 30});
   const Probe probe(map, turn);
-  Image turned(map.width, map.height, 3);
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x)
-      turned.setRgb(x, y, probe.radiance(vec3(texelDirection({map.width, map.height}, x, y))));
+  const Image turned = colorImage(map.width, map.height, [&](int x, int y) {
+    return probe.radiance(vec3(texelDirection({map.width, map.height}, x, y)));
+  });
   return residual(MapPair(map, turned).correlation(glm::conjugate(turn.quaternion())));
 }
 
@@ -144,30 +140,6 @@ std::vector<int> heights(const Image& a, const Image& b) {
 ProbeFit fitOf(const Candidate& candidate) {
   return {Rotation::ofQuaternion(candidate.rotation), candidate.correlation};
 }
-
-}  // namespace
-
-ProbeAlignment alignProbes(const Image& first, const Image& second, std::string_view firstName,
-                           std::string_view secondName) {
-  const LogMaps firstMaps(first), secondMaps(second);
-  std::vector<Candidate> candidates;
-  dvec3 errors(0);
-  for (const int height : heights(first, second)) {
-    const Image a = firstMaps.map(height), b = secondMaps.map(height);
-    if (candidates.empty()) checkVaries(a, firstName), checkVaries(b, secondName);
-    const MapPair maps(a, b);
-    if (candidates.empty()) candidates = search(maps);
-    const double least = std::max(interpolationResidual(a), interpolationResidual(b));
-    candidates = refined(maps, std::move(candidates), height, least);
-    errors = maps.standardErrors(candidates.front().rotation);
-  }
-  ProbeAlignment alignment{fitOf(candidates.front()), glm::degrees(errors), {}, {}};
-  for (size_t i = 1; i < candidates.size(); ++i) alignment.others.push_back(fitOf(candidates[i]));
-  alignment.axis = commonAxis(candidates);
-  return alignment;
-}
-
-namespace {
 
 constexpr int kScales = 6;  // shifts of 2^kScales - 1 pixels
 
@@ -250,6 +222,26 @@ Shift shiftBetween(const Image& a, const Image& b, double percentile, int scales
 }
 
 }  // namespace
+
+ProbeAlignment alignProbes(const Image& first, const Image& second, std::string_view firstName,
+                           std::string_view secondName) {
+  const LogMaps firstMaps(first), secondMaps(second);
+  std::vector<Candidate> candidates;
+  dvec3 errors(0);
+  for (const int height : heights(first, second)) {
+    const Image a = firstMaps.map(height), b = secondMaps.map(height);
+    if (candidates.empty()) checkVaries(a, firstName), checkVaries(b, secondName);
+    const MapPair maps(a, b);
+    if (candidates.empty()) candidates = search(maps);
+    const double least = std::max(interpolationResidual(a), interpolationResidual(b));
+    candidates = refined(maps, std::move(candidates), height, least);
+    errors = maps.standardErrors(candidates.front().rotation);
+  }
+  ProbeAlignment alignment{fitOf(candidates.front()), glm::degrees(errors), {}, {}};
+  for (size_t i = 1; i < candidates.size(); ++i) alignment.others.push_back(fitOf(candidates[i]));
+  alignment.axis = commonAxis(candidates);
+  return alignment;
+}
 
 bool Shift::isCertain() const {
   constexpr double kLeast = 0.005;

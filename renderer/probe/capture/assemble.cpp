@@ -5,7 +5,6 @@
 #include "image/image.h"
 #include "probe/convert.h"
 #include "probe/probe.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 
@@ -79,17 +78,14 @@ Image tile(const PhotographPreview& photograph, const DisplayTransform& transfor
   const bool hasMask = !photograph.mask->empty();
   const Image mask = hasMask ? reduced(*photograph.mask, kTile) : Image();
   const double scale = double(photograph.image->width) / small.width;
-  Image out(small.width, small.height, 3);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) {
-      Rgb color = display(transform, float(photograph.gain) * small.rgb(x, y));
-      if (hasMask) color *= 0.25f + 0.75f * *mask.at(x, y);
-      const dvec2 fromCentre = scale * dvec2(x + 0.5, y + 0.5) - photograph.circle.centre;
-      const bool isOnCircle =
-          std::fabs(glm::length(fromCentre) - photograph.circle.radius) < 0.75 * scale;
-      out.setRgb(x, y, isOnCircle ? kCircle : color);
-    }
-  return out;
+  return colorImage(small.width, small.height, [&](int x, int y) {
+    Rgb color = display(transform, float(photograph.gain) * small.rgb(x, y));
+    if (hasMask) color *= 0.25f + 0.75f * *mask.at(x, y);
+    const dvec2 fromCentre = scale * dvec2(x + 0.5, y + 0.5) - photograph.circle.centre;
+    const bool isOnCircle =
+        std::fabs(glm::length(fromCentre) - photograph.circle.radius) < 0.75 * scale;
+    return isOnCircle ? kCircle : color;
+  });
 }
 
 Image mapOf(const Assembly& assembly, const DisplayTransform& transform) {
@@ -97,14 +93,11 @@ Image mapOf(const Assembly& assembly, const DisplayTransform& transform) {
   const int longest = std::min(assembly.latLong.width, kWidth);
   const Image map = reduced(assembly.latLong, longest);
   const Image coverage = reduced(assembly.coverage, longest);
-  Image out(map.width, map.height, 3);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) {
-      const bool isStripe = (x + y) % kPeriod < kPeriod / 3;
-      const bool isBlind = *coverage.at(x, y) < 0.5f;
-      out.setRgb(x, y, isBlind && isStripe ? kStripe : display(transform, map.rgb(x, y)));
-    }
-  return out;
+  return colorImage(map.width, map.height, [&](int x, int y) {
+    const bool isStripe = (x + y) % kPeriod < kPeriod / 3;
+    const bool isBlind = *coverage.at(x, y) < 0.5f;
+    return isBlind && isStripe ? kStripe : display(transform, map.rgb(x, y));
+  });
 }
 
 void paste(const Image& from, Image& to, int left, int top) {

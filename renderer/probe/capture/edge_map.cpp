@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/edge_map.h"
 
-#include <functional>
-
 namespace chromeball {
 
 Image meanLuminance(const Image& image, int scale) {

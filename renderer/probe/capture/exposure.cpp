@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/exposure.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 
 #include "base/error.h"
@@ -23,12 +20,7 @@ class Transmissions {
         entries_.push_back({*photograph.aperture, std::pow(*photograph.aperture, -2)});
   }
 
-  double of(double aperture) const {
-    return std::ranges::find_if(
-               entries_,
-               [&](const Entry& entry) { return isSameAperture(entry.aperture, aperture); })
-        ->transmission;
-  }
+  double of(double aperture) { return find(aperture)->transmission; }
 
   void apply(const ApertureRatio& ratio) {
     Entry *from = find(ratio.from), *to = find(ratio.to);
@@ -57,26 +49,6 @@ class Transmissions {
 
   std::vector<Entry> entries_;
 };
-
-}  // namespace
-
-std::vector<double> exposureFactors(std::span<const CameraSettings> photographs,
-                                    std::span<const ApertureRatio> ratios) {
-  Transmissions transmissions(photographs);
-  for (const ApertureRatio& ratio : ratios) transmissions.apply(ratio);
-  std::vector<double> factors;
-  for (const CameraSettings& p : photographs)
-    factors.push_back(p.time * p.iso.value_or(100) / 100 *
-                      (p.aperture ? transmissions.of(*p.aperture) : 1));
-  return factors;
-}
-
-int sampleStep(const Image& image) {
-  constexpr double kSamples = 1 << 20;
-  return std::max(1, int(std::sqrt(double(image.width) * image.height / kSamples)));
-}
-
-namespace {
 
 constexpr size_t kMinPixels = 20;
 
@@ -108,36 +80,6 @@ double medianRatio(const Exposure& longer, const Exposure& shorter, const Respon
   if (ratios.size() < kMinPixels) return std::numeric_limits<double>::quiet_NaN();
   return std::exp(median(std::move(ratios))) * shorter.factor[channel] / longer.factor[channel];
 }
-
-}  // namespace
-
-std::optional<double> ExposureAgreement::error() const {
-  std::optional<double> largest;
-  for (int c = 0; c < 3; ++c)
-    if (const double difference = std::abs(found[c] - 1); difference >= largest.value_or(0))
-      largest = difference;
-  return largest;
-}
-
-std::vector<ExposureAgreement> exposureAgreement(std::span<const Exposure> exposures,
-                                                 const ResponseCurve& response) {
-  std::vector<size_t> order(exposures.size());
-  std::iota(order.begin(), order.end(), size_t(0));
-  std::ranges::stable_sort(
-      order, [&](size_t a, size_t b) { return exposures[a].factor.y > exposures[b].factor.y; });
-  std::vector<ExposureAgreement> agreements;
-  for (size_t i = 0; i + 1 < order.size(); ++i) {
-    const Exposure &longer = exposures[order[i]], &shorter = exposures[order[i + 1]];
-    ExposureAgreement agreement{order[i], order[i + 1], longer.factor.y / shorter.factor.y,
-                                dvec3(0), std::numeric_limits<size_t>::max()};
-    for (int c = 0; c < 3; ++c)
-      agreement.found[c] = medianRatio(longer, shorter, response, c, agreement.pixels);
-    agreements.push_back(agreement);
-  }
-  return agreements;
-}
-
-namespace {
 
 constexpr int kLevels = ResponseCurve::kLevels, kMiddle = 128;
 constexpr const char* kChannels[] = {"red", "green", "blue"};
@@ -212,6 +154,48 @@ std::vector<double> solveChannel(std::span<const Exposure> exposures, int channe
 }
 
 }  // namespace
+
+std::vector<double> exposureFactors(std::span<const CameraSettings> photographs,
+                                    std::span<const ApertureRatio> ratios) {
+  Transmissions transmissions(photographs);
+  for (const ApertureRatio& ratio : ratios) transmissions.apply(ratio);
+  std::vector<double> factors;
+  for (const CameraSettings& p : photographs)
+    factors.push_back(p.time * p.iso.value_or(100) / 100 *
+                      (p.aperture ? transmissions.of(*p.aperture) : 1));
+  return factors;
+}
+
+int sampleStep(const Image& image) {
+  constexpr double kSamples = 1 << 20;
+  return std::max(1, int(std::sqrt(double(image.width) * image.height / kSamples)));
+}
+
+std::optional<double> ExposureAgreement::error() const {
+  std::optional<double> largest;
+  for (int c = 0; c < 3; ++c)
+    if (const double difference = std::abs(found[c] - 1); difference >= largest.value_or(0))
+      largest = difference;
+  return largest;
+}
+
+std::vector<ExposureAgreement> exposureAgreement(std::span<const Exposure> exposures,
+                                                 const ResponseCurve& response) {
+  std::vector<size_t> order(exposures.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::ranges::stable_sort(
+      order, [&](size_t a, size_t b) { return exposures[a].factor.y > exposures[b].factor.y; });
+  std::vector<ExposureAgreement> agreements;
+  for (size_t i = 0; i + 1 < order.size(); ++i) {
+    const Exposure &longer = exposures[order[i]], &shorter = exposures[order[i + 1]];
+    ExposureAgreement agreement{order[i], order[i + 1], longer.factor.y / shorter.factor.y,
+                                dvec3(0), std::numeric_limits<size_t>::max()};
+    for (int c = 0; c < 3; ++c)
+      agreement.found[c] = medianRatio(longer, shorter, response, c, agreement.pixels);
+    agreements.push_back(agreement);
+  }
+  return agreements;
+}
 
 ResponseCurve solveResponse(std::span<const Exposure> exposures, double smoothness) {
   std::vector<dvec3> table(kLevels);

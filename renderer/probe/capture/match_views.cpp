@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 
 namespace chromeball {
 

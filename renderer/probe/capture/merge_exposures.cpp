@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/merge_exposures.h"
 
-#include <algorithm>
-#include <cmath>
 #include <mutex>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/image.h"
 #include "image/io/exif.h"
 #include "image/tonemap.h"
 
@@ -19,46 +16,39 @@ struct Channel {
   double radiance = 0;
 };
 
-class Merger {
- public:
-  Merger(std::span<const Exposure> exposures, const ResponseCurve& response)
-      : exposures_(exposures), response_(response) {}
+using Exposures = std::span<const Exposure>;
 
-  Channel merge(int x, int y, int channel) const {
-    double sum = 0, weights = 0;
-    for (const Exposure& exposure : exposures_) {
-      const float level = exposure.levels.at(x, y)[channel], weight = hatWeight(level);
-      if (weight == 0) continue;
-      sum += weight * logRadiance(exposure, x, y, channel, level);
-      weights += weight;
-    }
-    if (weights > 0) return {Channel::State::Measured, std::exp(sum / weights)};
-    return bound(x, y, channel);
+double logRadiance(const Exposure& exposure, const ResponseCurve& response, int x, int y,
+                   int channel, float level) {
+  const double flat = exposure.flatField ? exposure.flatField->at(x, y)[channel] : 1;
+  return response.logExposure(channel, level) - std::log(exposure.factor[channel] * flat);
+}
+
+// The highest bound is the shortest exposure's.
+Channel boundOf(Exposures exposures, const ResponseCurve& response, int x, int y, int channel) {
+  Channel bound{Channel::State::Underexposed, 0};
+  for (const Exposure& exposure : exposures)
+    if (exposure.levels.at(x, y)[channel] >= kSaturated)
+      bound = {Channel::State::Clipped,
+               std::max(bound.radiance,
+                        std::exp(logRadiance(exposure, response, x, y, channel, kSaturated)))};
+  return bound;
+}
+
+Channel mergedAt(Exposures exposures, const ResponseCurve& response, int x, int y, int channel) {
+  double sum = 0, weights = 0;
+  for (const Exposure& exposure : exposures) {
+    const float level = exposure.levels.at(x, y)[channel], weight = hatWeight(level);
+    if (weight == 0) continue;
+    sum += weight * logRadiance(exposure, response, x, y, channel, level);
+    weights += weight;
   }
-
- private:
-  double logRadiance(const Exposure& exposure, int x, int y, int channel, float level) const {
-    const double flat = exposure.flatField ? exposure.flatField->at(x, y)[channel] : 1;
-    return response_.logExposure(channel, level) - std::log(exposure.factor[channel] * flat);
-  }
-
-  // The highest bound is the shortest exposure's.
-  Channel bound(int x, int y, int channel) const {
-    Channel bound{Channel::State::Underexposed, 0};
-    for (const Exposure& exposure : exposures_)
-      if (exposure.levels.at(x, y)[channel] >= kSaturated)
-        bound = {
-            Channel::State::Clipped,
-            std::max(bound.radiance, std::exp(logRadiance(exposure, x, y, channel, kSaturated)))};
-    return bound;
-  }
-
-  std::span<const Exposure> exposures_;
-  const ResponseCurve& response_;
-};
+  if (weights > 0) return {Channel::State::Measured, std::exp(sum / weights)};
+  return boundOf(exposures, response, x, y, channel);
+}
 
 // Adds the counts of one row.
-void count(std::span<const Exposure> exposures, int y, std::vector<MergedExposures::Use>& uses) {
+void count(Exposures exposures, int y, std::vector<MergedExposures::Use>& uses) {
   for (size_t i = 0; i < exposures.size(); ++i)
     for (int x = 0; x < exposures[i].levels.width; ++x) {
       const Rgb levels = exposures[i].levels.rgb(x, y);
@@ -66,39 +56,6 @@ void count(std::span<const Exposure> exposures, int y, std::vector<MergedExposur
       uses[i].weighted += hatWeight(levels.x) + hatWeight(levels.y) + hatWeight(levels.z) > 0;
     }
 }
-
-}  // namespace
-
-MergedExposures mergeExposures(std::span<const Exposure> exposures, const ResponseCurve& response) {
-  const int width = exposures.front().levels.width, height = exposures.front().levels.height;
-  MergedExposures merged{.radiance = Image(width, height, 3),
-                         .clipped = Image(width, height, 1),
-                         .uses = std::vector<MergedExposures::Use>(exposures.size())};
-  const Merger merger(exposures, response);
-  std::mutex mutex;  // of the counts
-  forRows(width, height, [&](int y) {
-    size_t clipped = 0, underexposed = 0;
-    for (int x = 0; x < width; ++x) {
-      bool isClipped = false, isUnderexposed = false;
-      for (int c = 0; c < 3; ++c) {
-        const Channel channel = merger.merge(x, y, c);
-        merged.radiance.at(x, y)[c] = float(channel.radiance);
-        isClipped |= channel.state == Channel::State::Clipped;
-        isUnderexposed |= channel.state == Channel::State::Underexposed;
-      }
-      *merged.clipped.at(x, y) = isClipped ? 1 : 0;
-      clipped += isClipped;
-      underexposed += isUnderexposed;
-    }
-    const std::lock_guard lock(mutex);
-    merged.clippedPixels += clipped;
-    merged.underexposedPixels += underexposed;
-    count(exposures, y, merged.uses);
-  });
-  return merged;
-}
-
-namespace {
 
 std::string kindOf(int bits) {
   return bits > 0 ? fmt::format("integers of {} bits", bits) : std::string("floats");
@@ -139,7 +96,53 @@ void toSmallestSize(PhotographLevels& photographs) {
       image = levelsOfMeans(image, width, height, photographs.isSrgb());
 }
 
+void checkCount(const std::vector<double>& numbers, size_t files, const char* option) {
+  if (!numbers.empty() && numbers.size() != files)
+    throwInput("{}: has {} numbers for {} photographs; give one for each", option, numbers.size(),
+               files);
+}
+
+// A property that one photograph states and another does not makes their ratio unknown.
+void checkAllOrNone(const std::vector<std::string>& files,
+                    const std::vector<CameraSettings>& settings,
+                    std::optional<double> CameraSettings::*member, const char* name) {
+  for (size_t i = 1; i < files.size(); ++i)
+    if ((settings[i].*member).has_value() != (settings[0].*member).has_value()) {
+      const bool first = (settings[0].*member).has_value();
+      throwInput("{}: has no {} in its EXIF block, but {} has one; give the exposures",
+                 files[first ? i : 0], name, files[first ? 0 : i]);
+    }
+}
+
 }  // namespace
+
+MergedExposures mergeExposures(std::span<const Exposure> exposures, const ResponseCurve& response) {
+  const int width = exposures.front().levels.width, height = exposures.front().levels.height;
+  MergedExposures merged{.radiance = Image(width, height, 3),
+                         .clipped = Image(width, height, 1),
+                         .uses = std::vector<MergedExposures::Use>(exposures.size())};
+  std::mutex mutex;  // of the counts
+  forRows(width, height, [&](int y) {
+    size_t clipped = 0, underexposed = 0;
+    for (int x = 0; x < width; ++x) {
+      bool isClipped = false, isUnderexposed = false;
+      for (int c = 0; c < 3; ++c) {
+        const Channel channel = mergedAt(exposures, response, x, y, c);
+        merged.radiance.at(x, y)[c] = float(channel.radiance);
+        isClipped |= channel.state == Channel::State::Clipped;
+        isUnderexposed |= channel.state == Channel::State::Underexposed;
+      }
+      *merged.clipped.at(x, y) = isClipped ? 1 : 0;
+      clipped += isClipped;
+      underexposed += isUnderexposed;
+    }
+    const std::lock_guard lock(mutex);
+    merged.clippedPixels += clipped;
+    merged.underexposedPixels += underexposed;
+    count(exposures, y, merged.uses);
+  });
+  return merged;
+}
 
 PhotographLevels readLevels(const std::vector<std::string>& files, std::optional<float> white,
                             bool resizes) {
@@ -191,28 +194,6 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
   if (resizes) toSmallestSize(result);
   return result;
 }
-
-namespace {
-
-void checkCount(const std::vector<double>& numbers, size_t files, const char* option) {
-  if (!numbers.empty() && numbers.size() != files)
-    throwInput("{}: has {} numbers for {} photographs; give one for each", option, numbers.size(),
-               files);
-}
-
-// A property that one photograph states and another does not makes their ratio unknown.
-void checkAllOrNone(const std::vector<std::string>& files,
-                    const std::vector<CameraSettings>& settings,
-                    std::optional<double> CameraSettings::*member, const char* name) {
-  for (size_t i = 1; i < files.size(); ++i)
-    if ((settings[i].*member).has_value() != (settings[0].*member).has_value()) {
-      const bool first = (settings[0].*member).has_value();
-      throwInput("{}: has no {} in its EXIF block, but {} has one; give the exposures",
-                 files[first ? i : 0], name, files[first ? 0 : i]);
-    }
-}
-
-}  // namespace
 
 std::vector<CameraSettings> cameraSettings(const std::vector<std::string>& files,
                                            const std::vector<double>& times,

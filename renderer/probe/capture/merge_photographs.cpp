@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/merge_photographs.h"
 
-#include <algorithm>
 #include <array>
 #include <map>
-#include <vector>
 
 #include "base/error.h"
 #include "image/io/read_image.h"
 #include "math/cdf.h"
 #include "probe/capture/align.h"
-#include "probe/capture/exposure.h"
-#include "probe/capture/merge_exposures.h"
 
 namespace chromeball {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/find_circle.h"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 #include <vector>

@@ -2,18 +2,13 @@
 // A photograph of a mirror ball, or through a fisheye lens.
 #pragma once
 
-#include <cmath>
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "base/message.h"
 #include "image/image.h"
 #include "math/vec.h"
 
 namespace chromeball {
-
-// A circle in a photograph.
 
 // A circle in pixels, x right and y down from the top left corner of the image; texel (x, y) covers
 // [x, x + 1) x [y, y + 1).
@@ -62,11 +57,9 @@ class PhotographDisc {
   const Image& mask_;
 };
 
-// The position from which a photograph of a ball was taken.
-
-// The position as seen from the ball (or, for a lens, opposite to where it looks), in degrees:
-// azimuth 0 is +Z, 90 is +X; elevation 90 is +Y. The camera stands upright: its right is
-// horizontal.
+// The position from which a photograph of a ball was taken, as seen from the ball (or, for a lens,
+// opposite to where it looks), in degrees: azimuth 0 is +Z, 90 is +X; elevation 90 is +Y. The
+// camera stands upright: its right is horizontal.
 struct CameraPosition {
   double azimuth = 0, elevation = 0;
 

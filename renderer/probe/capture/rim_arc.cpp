@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/rim_arc.h"
 
-#include <algorithm>
-#include <array>
 #include <limits>
 
 namespace chromeball {

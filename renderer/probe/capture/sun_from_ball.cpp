@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe/capture/sun_from_ball.h"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "base/error.h"
 #include "base/file.h"
 #include "image/io/read_image.h"
 #include "probe/convert.h"
 #include "probe/irradiance.h"
-#include "probe/solid_angle.h"
-#include "probe/sun_extraction.h"
 
 namespace chromeball {
 namespace {
@@ -64,6 +58,59 @@ class Blocks {
   int size_, left_, top_;
 };
 
+// The radiance of a white ball in the light of the probe, at each sample.
+std::vector<dvec3> radianceOf(const Image& probe, const BallSamples& ball) {
+  std::vector<vec3> normals;
+  normals.reserve(ball.samples.size());
+  for (const BallSample& sample : ball.samples) normals.push_back(sample.normal);
+  std::vector<dvec3> radiance = exactIrradiance(probe, normals);
+  for (dvec3& r : radiance) r /= kPiD;
+  return radiance;
+}
+
+dvec3 meanOf(const std::vector<dvec3>& values) {
+  dvec3 sum(0);
+  for (const dvec3& value : values) sum += value;
+  return sum / double(values.size());
+}
+
+double rmsOf(const std::vector<dvec3>& values) {
+  double sum = 0;
+  for (const dvec3& value : values) sum += glm::dot(value, value);
+  return std::sqrt(sum / (3 * double(values.size())));
+}
+
+constexpr float kPlateau = 0.98f;
+
+// Three channels: 1 where the probe shows as much as it can, else 0.
+Image marked(const Image& latLong, const Image* clipped) {
+  float maximum = 0;
+  for (int y = 0; y < latLong.height; ++y)
+    for (int x = 0; x < latLong.width; ++x)
+      maximum = std::max(maximum, luminance(latLong.rgb(x, y)));
+  return colorImage(latLong.width, latLong.height, [&](int x, int y) {
+    const bool isMarked = clipped
+                              ? *clipped->at(x, y) > 0.5f
+                              : maximum > 0 && luminance(latLong.rgb(x, y)) >= kPlateau * maximum;
+    return Rgb(isMarked ? 1 : 0);
+  });
+}
+
+struct Region {
+  std::vector<Texel> texels;
+  double solidAngle = 0;
+};
+
+std::vector<Region> regionsOf(const Image& marks) {
+  std::vector<Region> regions;
+  for (std::vector<Texel>& texels : brightRegions(marks, 0.5)) {
+    Region& region = regions.emplace_back(Region{std::move(texels)});
+    for (const Texel t : region.texels)
+      region.solidAngle += texelSolidAngle(t.y, marks.width, marks.height);
+  }
+  return regions;
+}
+
 }  // namespace
 
 // A point that is seen at the angle b from the axis is hit at the angle of incidence i, sin(i) =
@@ -98,32 +145,6 @@ BallSamples sampleBall(const DiffuseBall& ball, const Image& photograph, const I
                result.samples.size(), kMinSamples);
   return result;
 }
-
-namespace {
-
-// The radiance of a white ball in the light of the probe, at each sample.
-std::vector<dvec3> radianceOf(const Image& probe, const BallSamples& ball) {
-  std::vector<vec3> normals;
-  normals.reserve(ball.samples.size());
-  for (const BallSample& sample : ball.samples) normals.push_back(sample.normal);
-  std::vector<dvec3> radiance = exactIrradiance(probe, normals);
-  for (dvec3& r : radiance) r /= kPiD;
-  return radiance;
-}
-
-dvec3 meanOf(const std::vector<dvec3>& values) {
-  dvec3 sum(0);
-  for (const dvec3& value : values) sum += value;
-  return sum / double(values.size());
-}
-
-double rmsOf(const std::vector<dvec3>& values) {
-  double sum = 0;
-  for (const dvec3& value : values) sum += glm::dot(value, value);
-  return std::sqrt(sum / (3 * double(values.size())));
-}
-
-}  // namespace
 
 SunFromBall solveSun(const Image& clipped, const BallSamples& ball, const dvec3& direction,
                      double angle) {
@@ -168,55 +189,13 @@ SunFromBall solveSun(const Image& clipped, const BallSamples& ball, const dvec3&
   return result;
 }
 
-namespace {
-
-constexpr float kPlateau = 0.98f;
-
-// Three channels: 1 where the probe shows as much as it can, else 0.
-Image marked(const Image& latLong, const Image* clipped) {
-  float maximum = 0;
-  for (int y = 0; y < latLong.height; ++y)
-    for (int x = 0; x < latLong.width; ++x)
-      maximum = std::max(maximum, luminance(latLong.rgb(x, y)));
-  Image marks(latLong.width, latLong.height, 3);
-  for (int y = 0; y < marks.height; ++y)
-    for (int x = 0; x < marks.width; ++x) {
-      const bool isMarked = clipped
-                                ? *clipped->at(x, y) > 0.5f
-                                : maximum > 0 && luminance(latLong.rgb(x, y)) >= kPlateau * maximum;
-      marks.setRgb(x, y, Rgb(isMarked ? 1 : 0));
-    }
-  return marks;
-}
-
-struct Region {
-  std::vector<Texel> texels;
-  double solidAngle = 0;
-};
-
-std::vector<Region> regionsOf(const Image& marks) {
-  std::vector<bool> visited(size_t(marks.width) * marks.height);
-  std::vector<Region> regions;
-  for (int y = 0; y < marks.height; ++y)
-    for (int x = 0; x < marks.width; ++x) {
-      Region region{gatherRegion(marks, {x, y}, 0.5, visited)};
-      if (region.texels.empty()) continue;
-      for (const Texel t : region.texels)
-        region.solidAngle += texelSolidAngle(t.y, marks.width, marks.height);
-      regions.push_back(std::move(region));
-    }
-  return regions;
-}
-
-}  // namespace
-
 std::optional<Image> loadClippedLayer(const std::filesystem::path& path, const LoadedProbe& probe) {
   if (lowerExtension(path) != ".exr") return std::nullopt;
   const std::optional<Image> layer = layerOf(readImageFile(path), "clipped", path);
   if (!layer) return std::nullopt;
-  Image marks(layer->width, layer->height, 3);
-  for (int y = 0; y < marks.height; ++y)
-    for (int x = 0; x < marks.width; ++x) marks.setRgb(x, y, Rgb(*layer->at(x, y) > 0.5f ? 1 : 0));
+  const Image marks = colorImage(layer->width, layer->height, [&](int x, int y) {
+    return Rgb(*layer->at(x, y) > 0.5f ? 1 : 0);
+  });
   const Image map = convert(marks, probe.mapping, Mapping::LatLong,
                             {probe.latLong.width, probe.latLong.height}, probe.turned ? 180 : 0);
   Image clipped(map.width, map.height, 1);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -9,7 +8,6 @@
 #include "math/cdf.h"
 #include "math/dense_solvers.h"
 #include "probe/capture/stitch.h"
-#include "probe/capture/tile.h"
 
 namespace chromeball {
 namespace {

@@ -13,7 +13,6 @@
 #include "base/parallel.h"
 #include "math/rotation.h"
 #include "probe/mapping.h"
-#include "probe/solid_angle.h"
 
 namespace chromeball {
 

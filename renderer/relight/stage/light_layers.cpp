@@ -11,33 +11,26 @@ namespace chromeball {
 
 Image sumOf(std::span<const Image> layers) {
   assert(!layers.empty());
-  Image whole(layers.front().width, layers.front().height, 3);
-  for (int y = 0; y < whole.height; ++y)
-    for (int x = 0; x < whole.width; ++x) {
-      glm::dvec3 sum(0);
-      for (const Image& layer : layers) sum += glm::dvec3(layer.rgb(x, y));
-      whole.setRgb(x, y, Rgb(sum));
-    }
-  return whole;
+  return colorImage(layers.front().width, layers.front().height, [&](int x, int y) {
+    glm::dvec3 sum(0);
+    for (const Image& layer : layers) sum += glm::dvec3(layer.rgb(x, y));
+    return Rgb(sum);
+  });
 }
 
 Image scaled(Image layer, const Rgb& gain) {
-  for (int y = 0; y < layer.height; ++y)
-    for (int x = 0; x < layer.width; ++x) layer.setRgb(x, y, gain * layer.rgb(x, y));
+  recolor(layer, [&](const Rgb& c) { return gain * c; });
   return layer;
 }
 
 Image shadowMatte(const Image& whole, const Image& layer) {
-  Image matte(whole.width, whole.height, 3);
-  for (int y = 0; y < matte.height; ++y)
-    for (int x = 0; x < matte.width; ++x) {
-      const Rgb all = whole.rgb(x, y), part = layer.rgb(x, y);
-      Rgb factor(1);
-      for (int k = 0; k < 3; ++k)
-        if (all[k] > 0) factor[k] = std::clamp(1 - part[k] / all[k], 0.0f, 1.0f);
-      matte.setRgb(x, y, factor);
-    }
-  return matte;
+  return colorImage(whole.width, whole.height, [&](int x, int y) {
+    const Rgb all = whole.rgb(x, y), part = layer.rgb(x, y);
+    Rgb factor(1);
+    for (int k = 0; k < 3; ++k)
+      if (all[k] > 0) factor[k] = std::clamp(1 - part[k] / all[k], 0.0f, 1.0f);
+    return factor;
+  });
 }
 
 Image relit(const OcclusionLayers& layers, const Image& latLong, const Rotation& rotation) {

@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "base/progress.h"
-#include "lighting/uniform.h"
+#include "lighting/probe_light.h"
 #include "relight/stage/light_stage.h"
 #include "render/render.h"
 #include "transport/light_groups.h"

@@ -12,7 +12,7 @@
 #include "image/size_limits.h"
 #include "probe/convert.h"
 #include "probe/edit.h"
-#include "probe/solid_angle.h"
+#include "probe/mapping.h"
 #include "scene/gltf/gltf_json.h"
 #include "scene/texture.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `uniform`: directions uniform over the hemisphere of the normal, pdf 1 / 2 pi.
+// Strategies that sample a probe, and the two simplest of them.
 #pragma once
 
 #include "lighting/light_source.h"
@@ -9,9 +9,21 @@
 
 namespace chromeball {
 
-class Uniform : public LightSource {
+// The camera and mirrors see the probe.
+class ProbeLight : public LightSource {
  public:
-  explicit Uniform(const Probe& probe) : probe_(probe) {}
+  explicit ProbeLight(const Probe& probe) : probe_(probe) {}
+
+  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
+
+ protected:
+  const Probe& probe_;
+};
+
+// `uniform`: directions uniform over the hemisphere of the normal, pdf 1 / 2 pi.
+class Uniform : public ProbeLight {
+ public:
+  using ProbeLight::ProbeLight;
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override {
@@ -22,29 +34,19 @@ class Uniform : public LightSource {
   Escaped escaped(const LightPoint& point, const vec3& wi) const override {
     return {probe_.radiance(wi), glm::dot(point.normal, wi) > 0 ? 0.5f * kInvPi : 0};
   }
-  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
-  bool unbiased() const override { return true; }
-
- private:
-  const Probe& probe_;
 };
 
 // `bsdf`: no light samples; BSDF samples find the probe (HDRI book, section 9.5).
 
-class BsdfOnly : public LightSource {
+class BsdfOnly : public ProbeLight {
  public:
-  explicit BsdfOnly(const Probe& probe) : probe_(probe) {}
+  using ProbeLight::ProbeLight;
 
   void sample(const LightPoint&, const PixelSampler&,
               std::vector<DirectionSample>&) const override {}
   Escaped escaped(const LightPoint&, const vec3& wi) const override {
     return {probe_.radiance(wi), 0};
   }
-  Rgb background(const vec3&, const vec3& wi) const override { return probe_.radiance(wi); }
-  bool unbiased() const override { return true; }
-
- private:
-  const Probe& probe_;
 };
 
 }  // namespace chromeball
