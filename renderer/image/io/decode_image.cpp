@@ -4,7 +4,6 @@
 #include <webp/decode.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "base/error.h"
 #include "base/memory.h"
@@ -14,16 +13,11 @@
 namespace chromeball {
 namespace {
 
-bool startsWith(std::span<const uint8_t> file, std::string_view magic) {
-  return file.size() >= magic.size() &&
-         std::equal(magic.begin(), magic.end(), file.begin(),
-                    [](char a, uint8_t b) { return uint8_t(a) == b; });
-}
-
 [[noreturn]] void refuseFormat(std::span<const uint8_t> file, const std::string& name) {
-  const char* found = startsWith(file, "\xabKTX 20")                ? "KTX2"
-                      : startsWith(file, "DDS ")                    ? "DDS"
-                      : startsWith(file, "version https://git-lfs") ? "a Git LFS pointer"
+  const std::string_view text = textOf(file);
+  const char* found = text.starts_with("\xabKTX 20")                ? "KTX2"
+                      : text.starts_with("DDS ")                    ? "DDS"
+                      : text.starts_with("version https://git-lfs") ? "a Git LFS pointer"
                                                                     : nullptr;
   if (found) throwInput("{}: is {}; it must be PNG, JPEG or WebP", name, found);
   throwInput("{}: is not a PNG, JPEG or WebP file", name);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/image_format.h"
 
-#include <string_view>
 #include <utility>
 
 #include "base/error.h"
@@ -20,7 +19,7 @@ ImageFormat imageFormat(std::span<const uint8_t> firstBytes) {
       {std::string_view("MM\0*", 4), ImageFormat::Tiff},
       {std::string_view("II+\0", 4), ImageFormat::Tiff},  // BigTIFF
       {std::string_view("MM\0+", 4), ImageFormat::Tiff}};
-  const std::string_view bytes(reinterpret_cast<const char*>(firstBytes.data()), firstBytes.size());
+  const std::string_view bytes = textOf(firstBytes);
   for (const auto& [magic, format] : kMagic)
     if (bytes.starts_with(magic)) return format;
   constexpr size_t kTypeAt = 8;  // after the size

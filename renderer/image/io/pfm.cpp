@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "image/io/image_format.h"
 #include "image/size_limits.h"
 
 namespace chromeball {
@@ -39,8 +40,7 @@ Number parse(const std::filesystem::path& path, std::string_view word) {
 
 Image readPfm(const std::filesystem::path& path, Messages& messages) {
   const std::vector<uint8_t> bytes = readFile(path);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
-                              std::min<size_t>(bytes.size(), 256));
+  const std::string_view text = textOf(bytes).substr(0, 256);
   size_t position = 0;
   const std::string_view magic = nextWord(text, position);
   if (magic != "PF" && magic != "Pf") throwInput("{}: not a PFM file", path.string());

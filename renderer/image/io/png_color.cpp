@@ -15,7 +15,8 @@
 
 #include "base/progress.h"
 #include "image/io/decode_image.h"
-#include "image/io/metadata_blocks.h"
+#include "image/io/exif.h"
+#include "image/io/image_format.h"
 
 namespace chromeball {
 namespace {
@@ -25,10 +26,8 @@ template <size_t kCount>
 std::optional<std::array<double, kCount>> numbersIn(std::span<const uint8_t> chunk) {
   if (chunk.size() != 4 * kCount) return {};
   std::array<double, kCount> numbers;
-  for (size_t i = 0; i < kCount; ++i) {
-    const uint8_t* b = &chunk[4 * i];
-    numbers[i] = double(uint32_t(b[0]) << 24 | b[1] << 16 | b[2] << 8 | b[3]) / 100000;
-  }
+  for (size_t i = 0; i < kCount; ++i)
+    numbers[i] = double(bigEndian(chunk.subspan(4 * i, 4))) / 100000;
   return numbers;
 }
 

@@ -19,7 +19,6 @@
 #include "image/io/icc_profile.h"
 #include "image/io/image_format.h"
 #include "image/io/imageio_module.h"
-#include "image/io/metadata_blocks.h"
 #include "image/io/pfm.h"
 #include "image/io/png_color.h"
 #include "image/io/radiance_hdr.h"
