@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/image_format.h"
 
+#include <array>
+#include <fstream>
 #include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
 
 namespace chromeball {
 
@@ -27,6 +30,14 @@ ImageFormat imageFormat(std::span<const uint8_t> firstBytes) {
       bytes.substr(kTypeAt).starts_with("WEBP"))
     return ImageFormat::Webp;
   return ImageFormat::Unknown;
+}
+
+ImageFormat imageFormat(const std::filesystem::path& path) {
+  checkReadable(path);
+  std::array<uint8_t, 12> bytes{};  // that the function above looks at, at most
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+  return imageFormat(std::span(bytes).first(size_t(stream.gcount())));
 }
 
 // Text before the path is dropped, since our message starts with the path, unless the path comes

@@ -15,9 +15,8 @@ namespace chromeball {
 
 enum class ImageFormat { Exr, RadianceHdr, Pfm, Png, Jpeg, Webp, Tiff, Unknown };
 
-inline constexpr size_t kFormatBytes = 12;  // that imageFormat() looks at, at most
-
 ImageFormat imageFormat(std::span<const uint8_t> firstBytes);
+ImageFormat imageFormat(const std::filesystem::path& path);  // InputError if it cannot be read
 
 inline std::string_view textOf(std::span<const uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

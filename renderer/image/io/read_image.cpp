@@ -2,9 +2,7 @@
 #include "image/io/read_image.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
 
@@ -32,14 +30,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ImageFormat formatOf(const fs::path& path) {
-  checkReadable(path);
-  std::array<uint8_t, kFormatBytes> bytes{};
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-  return imageFormat(std::span(bytes).first(size_t(stream.gcount())));
-}
-
 void warnOfPixels(double aspectRatio, const fs::path& path, Messages& messages) {
   if (aspectRatio == 1) return;
   messages.push_back({Message::Kind::Warning,
@@ -50,16 +40,10 @@ void warnOfPixels(double aspectRatio, const fs::path& path, Messages& messages) 
 
 ImageFile readExr(const fs::path& path) {
   ExrInput input(path, kMaxImageFloats);
-  ImageFile file;
-  file.channels = input.channels();
-  file.metadata = input.metadata();
-  file.placement = input.placement();
-  file.part = input.part();
-  file.primaries = input.primaries();
-  if (!input.choice().empty()) file.messages.push_back({Message::Kind::Note, input.choice()});
+  ImageFile file = input.contents();
   warnOfPixels(input.pixelAspectRatio(), path, file.messages);
-  checkImageMemory(path, input.width(), input.height(), int64_t(input.channels().size()));
-  file.image = Image(input.width(), input.height(), int(input.channels().size()));
+  checkImageMemory(path, input.width(), input.height(), int64_t(file.channels.size()));
+  file.image = Image(input.width(), input.height(), int(file.channels.size()));
   input.read(0, input.height(), file.image.texels.data());
   return file;
 }
@@ -290,11 +274,11 @@ std::optional<double> metadataNumber(const Metadata& metadata, const std::string
 }
 
 Metadata readExrMetadata(const fs::path& path) {
-  return ExrInput(path, kMaxImageFloats).metadata();
+  return ExrInput(path, kMaxImageFloats).contents().metadata;
 }
 
 ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
-  const ImageFormat format = formatOf(path);
+  const ImageFormat format = imageFormat(path);
   ImageFile file = readByLibrary(path, [&]() -> ImageFile {
     switch (format) {
       case ImageFormat::Exr:
