@@ -199,8 +199,7 @@ fs::path replaceableFile(const fs::path& path) {
                                                                                   : nullptr;
   if (what)
     throwInput(
-        "{}: cannot be written: it is a {}; an output is a file that appears when it is "
-        "complete",
+        "{}: cannot be written: it is a {}; an output is a file that appears when it is complete",
         path.string(), what);
   return file;
 }

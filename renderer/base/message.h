@@ -2,8 +2,11 @@
 // Messages of the library to its user. The library itself prints nothing.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace chromeball {
@@ -26,6 +29,15 @@ struct Message {
 };
 
 using Messages = std::vector<Message>;
+
+template <class... Args>
+Message note(fmt::format_string<Args...> format, Args&&... args) {
+  return {Message::Kind::Note, fmt::format(format, std::forward<Args>(args)...)};
+}
+template <class... Args>
+Message warning(fmt::format_string<Args...> format, Args&&... args) {
+  return {Message::Kind::Warning, fmt::format(format, std::forward<Args>(args)...)};
+}
 
 // Merges many messages of a kind into one.
 

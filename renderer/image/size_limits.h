@@ -40,8 +40,7 @@ inline void checkImageMemory(const std::filesystem::path& path, int64_t width, i
   const double image = double(width) * double(height) * double(channels) * double(bytes);
   if (image <= kAlwaysAllowed || copies * image <= memoryBudget()) return;
   throwInput(
-      "{}: {} x {} texels with {} channels take {:.3g} GB of memory in all; {:.3g} GB are "
-      "allowed",
+      "{}: {} x {} texels with {} channels take {:.3g} GB of memory in all; {:.3g} GB are allowed",
       path.string(), width, height, channels, 1e-9 * copies * image, 1e-9 * memoryBudget());
 }
 

@@ -14,8 +14,6 @@ const Image* findDepth(const OutputImage& image) {
   return nullptr;
 }
 
-Message warning(std::string text) { return {Message::Kind::Warning, std::move(text)}; }
-
 // A finished render is written even if its camera does not allow the steps of developing.
 DevelopSettings possible(DevelopSettings settings, const ViewFrame& frame, const Image* depth,
                          Messages& messages) {
@@ -58,14 +56,13 @@ ViewFrame viewFrame(const Image& image, const std::optional<Placement>& placemen
 Messages inWords(const DevelopReport& report) {
   Messages messages;
   if (report.invalid > 0)
-    messages.push_back(
-        warning(fmt::format("develop: {} pixel{} NaN or infinite; as 0, they do not spread",
-                            report.invalid, report.invalid == 1 ? " is" : "s are")));
+    messages.push_back(warning("develop: {} pixel{} NaN or infinite; as 0, they do not spread",
+                               report.invalid, report.invalid == 1 ? " is" : "s are"));
   if (report.limited > 0)
     messages.push_back(
-        warning(fmt::format("develop: the depth blur of {} pixels is limited to a radius of {} "
-                            "pixels",
-                            report.limited, kMaxConfusionRadius)));
+        warning("develop: the depth blur of {} pixels is limited to a radius of {} "
+                "pixels",
+                report.limited, kMaxConfusionRadius));
   return messages;
 }
 

@@ -183,10 +183,8 @@ void ExrInput::readHeader() {
   if (const auto color = findColorChannels(parts)) {
     part_->select(color->part);
     if (!color->layer.empty() && !color->others.empty())
-      contents_.messages.push_back(
-          {Message::Kind::Note,
-           fmt::format("{}: its colour is that of `{}`, of {} layers with colour", path_.string(),
-                       color->layer, color->others.size() + 1)});
+      contents_.messages.push_back(note("{}: its colour is that of `{}`, of {} layers with colour",
+                                        path_.string(), color->layer, color->others.size() + 1));
   }
   contents_.part = parts[part_->selected()].name;
   const Imf::Header& header = part_->header();

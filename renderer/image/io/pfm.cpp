@@ -52,10 +52,8 @@ Image readPfm(const std::filesystem::path& path, Messages& messages) {
     throwInput("{}: the scale of a PFM, {}, should be a number below or above 0, 1e-20 to 1e20",
                path.string(), scale);
   if (factor != 1)
-    messages.push_back(
-        {Message::Kind::Note,
-         fmt::format("{}: its texels are multiplied by the scale of its header, {:g}",
-                     path.string(), factor)});
+    messages.push_back(note("{}: its texels are multiplied by the scale of its header, {:g}",
+                            path.string(), factor));
   const bool littleEndian = scale < 0;
   size_t begin = position + 1;  // one white space
 

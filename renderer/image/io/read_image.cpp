@@ -32,10 +32,9 @@ namespace fs = std::filesystem;
 
 void warnOfPixels(double aspectRatio, const fs::path& path, Messages& messages) {
   if (aspectRatio == 1) return;
-  messages.push_back({Message::Kind::Warning,
-                      fmt::format("{}: its pixels are not square, {:.4g} times as wide as high; "
-                                  "they are taken as square",
-                                  path.string(), aspectRatio)});
+  messages.push_back(warning(
+      "{}: its pixels are not square, {:.4g} times as wide as high; they are taken as square",
+      path.string(), aspectRatio));
 }
 
 ImageFile readExr(const fs::path& path) {
@@ -96,10 +95,9 @@ void warnOfProfile(std::span<const uint8_t> bytes, const DecodeSample& decode, c
                    const fs::path& path, ImageFile& file) {
   const IccProfile profile(bytes);
   if (profile.decodesBy(decode) && profile.has(file.primaries)) return;
-  file.messages.push_back({Message::Kind::Warning,
-                           fmt::format("{}: has a colour profile that is not applied; its colours "
-                                       "are read as {}",
-                                       path.string(), space)});
+  file.messages.push_back(
+      warning("{}: has a colour profile that is not applied; its colours are read as {}",
+              path.string(), space));
 }
 
 // `color`: what an integer file states beside its profile and its EXIF block. Sets the file's
@@ -125,10 +123,10 @@ void readColors(PngColor color, const std::optional<std::vector<uint8_t>>& profi
                                     : "sRGB",
                   path, file);
   } else if (exifStatesOtherColors(exif)) {
-    file.messages.push_back({Message::Kind::Warning,
-                             fmt::format("{}: its EXIF states other colours than those of sRGB, "
-                                         "such as Adobe RGB; they are read as those of sRGB",
-                                         path.string())});
+    file.messages.push_back(
+        warning("{}: its EXIF states other colours than those of sRGB, such as Adobe RGB; they are "
+                "read as those of sRGB",
+                path.string()));
   }
 }
 
@@ -186,10 +184,9 @@ void readTiffColors(std::span<const uint8_t> bytes, IntegerTexels integers, cons
   std::optional<std::vector<uint8_t>> profile;
   if (!data.empty()) profile.emplace(data.begin(), data.end());
   if (statesGrey(bytes) && file.channels == std::vector<std::string>{"R", "G", "B"})
-    file.messages.push_back({Message::Kind::Warning,
-                             fmt::format("{}: says that it is grey, but has three samples; they "
-                                         "are read as red, green and blue",
-                                         path.string())});
+    file.messages.push_back(warning(
+        "{}: says that it is grey, but has three samples; they are read as red, green and blue",
+        path.string()));
   const std::optional<Chromaticities> primaries = tiffPrimaries(bytes);
   if (!file.integers) {
     file.primaries = primaries;
@@ -199,9 +196,8 @@ void readTiffColors(std::span<const uint8_t> bytes, IntegerTexels integers, cons
   readColors({.primaries = primaries}, profile, bytes, integers, path, file);
   if (hasTransferTable(bytes))
     file.messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{}: has a TransferFunction that is not applied{}", path.string(),
-                     integers == IntegerTexels::Levels ? "" : "; its texels are read as sRGB")});
+        warning("{}: has a TransferFunction that is not applied{}", path.string(),
+                integers == IntegerTexels::Levels ? "" : "; its texels are read as sRGB"));
 }
 
 // The file with its picture as the first image, which is the one that the module reads.
@@ -210,10 +206,8 @@ std::vector<uint8_t> withPictureFirst(std::vector<uint8_t> bytes, const fs::path
   const TiffBlock tiff(bytes);
   const uint64_t picture = pictureDirectory(bytes);
   if (picture == tiff.firstDirectory()) return bytes;
-  messages.push_back({Message::Kind::Note,
-                      fmt::format("{}: its first image is a thumbnail or a mask; the first full "
-                                  "one is read",
-                                  path.string())});
+  messages.push_back(note(
+      "{}: its first image is a thumbnail or a mask; the first full one is read", path.string()));
   return tiff.withFirstDirectory(picture);
 }
 

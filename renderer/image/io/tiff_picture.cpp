@@ -195,8 +195,7 @@ uint64_t pictureDirectory(std::span<const uint8_t> file) {
   // libtiff takes its white, D50, for sRGB's, and ICC's numbers for CIE's.
   if (photometric >= kCieLab && photometric <= kItuLab)
     throw std::runtime_error(
-        "its texels are L*a*b*, of which only 8 bits would be read, tinted: "
-        "convert it to RGB");
+        "its texels are L*a*b*, of which only 8 bits would be read, tinted: convert it to RGB");
   checkWhole(tiff, picture, file.size());
   checkSizes(tiff, picture, file.size());
   return picture;

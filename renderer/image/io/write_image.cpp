@@ -141,13 +141,11 @@ std::optional<Message> uncoveredLight(const std::filesystem::path& path, const I
       lost += luminance(glm::max(rgb - Rgb(alpha), Rgb(0)));
     }
   if (pixels == 0) return {};
-  return Message{
-      Message::Kind::Warning,
-      fmt::format("{}: loses light on {:.2g}% of the pixels, {:.2g}% of the image's: a "
-                  ".png has no color beyond its alpha, and nothing covers the "
-                  "background there; an .exr holds it",
-                  path.string(), 100. * double(pixels) / (double(color.width) * color.height),
-                  100 * lost / light)};
+  return warning(
+      "{}: loses light on {:.2g}% of the pixels, {:.2g}% of the image's: a .png has no color "
+      "beyond its alpha, and nothing covers the background there; an .exr holds it",
+      path.string(), 100. * double(pixels) / (double(color.width) * color.height),
+      100 * lost / light);
 }
 
 // The numbers in the colour's channels that a format cannot hold.
@@ -180,9 +178,8 @@ Messages numbersLost(const std::filesystem::path& path, const Image& color, bool
   Messages messages;
   const auto add = [&](size_t numbers, const std::string& what) {
     if (numbers > 0)
-      messages.push_back({Message::Kind::Warning,
-                          fmt::format("{}: {:.3g}% of the channels are {}; an .exr holds them",
-                                      path.string(), beyond.percent(numbers), what)});
+      messages.push_back(warning("{}: {:.3g}% of the channels are {}; an .exr holds them",
+                                 path.string(), beyond.percent(numbers), what));
   };
   add(beyond.negative, fmt::format("negative, down to {:.3g}, and become 0", beyond.least));
   if (!isHdr) {
@@ -202,8 +199,7 @@ Messages lostLight(const std::filesystem::path& path, const Image& color) {
   Messages messages;
   if ((kind == ".hdr" || kind == ".pfm") && color.channels == 4 && !isOpaque(color))
     messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{}: holds no alpha, which is lost; an .exr or a .png does", path.string())});
+        warning("{}: holds no alpha, which is lost; an .exr or a .png does", path.string()));
   if (kind == ".png" && color.channels == 4)
     if (std::optional<Message> message = uncoveredLight(path, color))
       messages.push_back(*std::move(message));
