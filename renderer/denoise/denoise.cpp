@@ -207,19 +207,18 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
 Denoised sumOf(const std::vector<DenoisedPart>& parts) {
   const int width = parts.front().color.width, height = parts.front().color.height;
   Denoised sum{Image(width, height, 3), Image(width, height, 1)};
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      Rgb color(0);
-      glm::dvec3 squaredError(0);  // beyond the range of a float for bright and dim images
-      for (const DenoisedPart& part : parts) {
-        color += part.color.rgb(x, y);
-        const glm::dvec3 error(part.standardError.rgb(x, y));
-        squaredError += error * error;
-      }
-      // A regression may predict less than nothing.
-      sum.color.setRgb(x, y, glm::max(color, Rgb(0)));
-      *sum.error.at(x, y) = float(luminance(glm::sqrt(squaredError)));
+  for (size_t i = 0; i < sum.color.pixels(); ++i) {
+    Rgb color(0);
+    glm::dvec3 squaredError(0);  // beyond the range of a float for bright and dim images
+    for (const DenoisedPart& part : parts) {
+      color += part.color.rgb(i);
+      const glm::dvec3 error(part.standardError.rgb(i));
+      squaredError += error * error;
     }
+    // A regression may predict less than nothing.
+    sum.color.setRgb(i, glm::max(color, Rgb(0)));
+    sum.error.texels[i] = float(luminance(glm::sqrt(squaredError)));
+  }
   return sum;
 }
 
@@ -233,18 +232,15 @@ double remainingNoise(const Denoised& denoised) {
   const Image& error = denoised.error;
   double mean = 0, sum = 0;
   const double count = double(error.texels.size());
-  for (int y = 0; y < color.height; ++y)
-    for (int x = 0; x < color.width; ++x) mean += double(luminance(color.rgb(x, y))) / count;
+  for (size_t i = 0; i < color.pixels(); ++i) mean += double(luminance(color.rgb(i))) / count;
   if (!(mean > 0)) return std::numeric_limits<double>::quiet_NaN();
-  for (int y = 0; y < color.height; ++y)
-    for (int x = 0; x < color.width; ++x) {
-      // As far as is known here, a pixel is as bright as its error if that exceeds its luminance.
-      const double absolute = double(*error.at(x, y));
-      const double reference =
-          std::max({double(luminance(color.rgb(x, y))), absolute, 0.01 * mean});
-      const double relative = absolute / reference;
-      sum += relative * relative / count;
-    }
+  for (size_t i = 0; i < color.pixels(); ++i) {
+    // As far as is known here, a pixel is as bright as its error if that exceeds its luminance.
+    const double absolute = double(error.texels[i]);
+    const double reference = std::max({double(luminance(color.rgb(i))), absolute, 0.01 * mean});
+    const double relative = absolute / reference;
+    sum += relative * relative / count;
+  }
   return std::sqrt(sum);
 }
 

@@ -110,21 +110,19 @@ glm::dvec4 Film::scatter(size_t pixel) const {
 
 Image Film::mean() const {
   Image image(width_, height_, 3);
-  forRows(width_, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
-      image.setRgb(x, y, Rgb(pixels_[size_t(y) * size_t(width_) + size_t(x)].mean()));
+  forRanges(pixels_.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) image.setRgb(i, Rgb(pixels_[i].mean()));
   });
   return image;
 }
 
 Image Film::halfDifference() const {
   Image image(width_, height_, 3);
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      const Pixel& p = pixels_[size_t(y) * size_t(width_) + size_t(x)];
-      if (p.counts[0] > 0 && p.counts[1] > 0)
-        image.setRgb(x, y, Rgb((p.sums[0] / p.weights[0] - p.sums[1] / p.weights[1]) / 2.0));
-    }
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& p = pixels_[i];
+    if (p.counts[0] > 0 && p.counts[1] > 0)
+      image.setRgb(i, Rgb((p.sums[0] / p.weights[0] - p.sums[1] / p.weights[1]) / 2.0));
+  }
   return image;
 }
 

@@ -125,10 +125,7 @@ std::vector<glm::dvec4> squaredStandardErrors(const PixelErrors& e) {
 
 Image varianceImage(const std::vector<glm::dvec4>& squaredErrors, int width, int height) {
   Image image(width, height, 3);
-  forRows(width, height, [&](int y) {
-    for (int x = 0; x < width; ++x)
-      image.setRgb(x, y, Rgb(squaredErrors[size_t(y) * size_t(width) + size_t(x)]));
-  });
+  for (size_t i = 0; i < squaredErrors.size(); ++i) image.setRgb(i, Rgb(squaredErrors[i]));
   return image;
 }
 

@@ -72,8 +72,7 @@ std::optional<glm::dmat3> toRec709(const Chromaticities& space) {
 }
 
 void convertColor(Image& image, const glm::dmat3& matrix) {
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) image.setRgb(x, y, Rgb(matrix * dvec3(image.rgb(x, y))));
+  for (size_t i = 0; i < image.pixels(); ++i) image.setRgb(i, Rgb(matrix * dvec3(image.rgb(i))));
 }
 
 Message conversionNote(const std::filesystem::path& path, const Chromaticities& from) {

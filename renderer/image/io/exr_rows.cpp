@@ -88,9 +88,8 @@ Imf::Header headerOf(const ExrLayout& layout) {
 void interleave(std::span<const Image* const> images, int top, Image& rows) {
   int offset = 0;
   for (const Image* image : images) {
-    for (int y = 0; y < rows.height; ++y)
-      for (int x = 0; x < rows.width; ++x)
-        std::copy_n(image->at(x, top + y), image->channels, rows.at(x, y) + offset);
+    for (size_t i = 0; i < rows.pixels(); ++i)
+      std::copy_n(image->at(image->pixel(0, top) + i), image->channels, rows.at(i) + offset);
     offset += image->channels;
   }
   assert(offset == rows.channels);

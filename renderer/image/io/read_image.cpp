@@ -49,12 +49,9 @@ ImageFile readExr(const fs::path& path) {
 
 // Multiplies the colour by alpha; the texels are linear.
 void associate(Image& image, int alphaChannel) {
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      float* texel = image.at(x, y);
-      for (int c = 0; c < image.channels; ++c)
-        if (c != alphaChannel) texel[c] *= texel[alphaChannel];
-    }
+  for (size_t i = 0; i < image.pixels(); ++i)
+    for (int c = 0; c < image.channels; ++c)
+      if (c != alphaChannel) image.at(i)[c] *= image.at(i)[alphaChannel];
 }
 
 template <class Sample>

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <csetjmp>
 #include <cstring>
@@ -24,18 +23,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string extension(const fs::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return text;
-}
-
 // Colour in a PNG is unassociated; black where alpha is 0. This comes before the tone curve, which
 // is not linear.
 Rgb unassociated(const Rgb& color, float alpha) { return alpha > 0 ? color / alpha : Rgb(0); }
 
-std::vector<uint8_t> encodeColor(const Image& color, const DisplayTransform& transform) {
+// Repeats grey in three channels.
+Image repeated(const Image& grey) {
+  Image color(grey.width, grey.height, 3);
+  for (size_t i = 0; i < grey.pixels(); ++i) color.setRgb(i, Rgb(*grey.at(i)));
+  return color;
+}
+
+}  // namespace
+
+std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform) {
+  if (color.channels < 3) return encodePng(repeated(color), transform);
   const auto byte = [](float encoded) { return uint8_t(std::lround(255 * encoded)); };
   const bool hasAlpha = color.channels == 4;
   std::vector<uint8_t> bytes(size_t(color.width) * color.height * (hasAlpha ? 4 : 3));
@@ -51,37 +53,26 @@ std::vector<uint8_t> encodeColor(const Image& color, const DisplayTransform& tra
   return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes);
 }
 
-// Repeats grey in three channels.
-Image repeated(const Image& grey) {
-  Image color(grey.width, grey.height, 3);
-  for (int y = 0; y < grey.height; ++y)
-    for (int x = 0; x < grey.width; ++x) color.setRgb(x, y, Rgb(*grey.at(x, y)));
-  return color;
-}
+namespace {
 
 // The formats that hold only the colour.
 Messages writeColor(const fs::path& path, const Image& color, const DisplayTransform& transform) {
   if (color.channels < 3) return writeColor(path, repeated(color), transform);
-  const std::string kind = extension(path);
+  const std::string kind = lowerExtension(path);
   if (kind == ".hdr")
     writeRadianceHdr(path, color);
   else if (kind == ".pfm")
     writePfm(path, color);
   else
-    writeFile(path, encodeColor(color, transform));
+    writeFile(path, encodePng(color, transform));
   return lostLight(path, color);
 }
 
 }  // namespace
 
-std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform) {
-  if (color.channels < 3) return encodeColor(repeated(color), transform);
-  return encodeColor(color, transform);
-}
-
 void checkImageName(const fs::path& path) {
   constexpr std::array kExtensions = {".exr", ".hdr", ".pfm", ".png"};
-  if (std::find(kExtensions.begin(), kExtensions.end(), extension(path)) == kExtensions.end())
+  if (std::find(kExtensions.begin(), kExtensions.end(), lowerExtension(path)) == kExtensions.end())
     throwInput("{}: unknown image format; the name must end in .exr, .hdr, .pfm or .png",
                path.string());
 }
@@ -94,14 +85,15 @@ void checkWritable(const fs::path& path) {
 Messages writeImage(const fs::path& path, const OutputImage& output,
                     const DisplayTransform& transform) {
   checkWritable(path);
-  if (extension(path) != ".exr") return writeColor(path, output.layers.front().image, transform);
+  if (lowerExtension(path) != ".exr")
+    return writeColor(path, output.layers.front().image, transform);
   writeExr(path, output);
   return {};
 }
 
 Messages writeInWindow(const fs::path& path, OutputImage output, const fs::path& source,
                        const DisplayTransform& transform) {
-  if (output.placement && extension(path) != ".exr") {
+  if (output.placement && lowerExtension(path) != ".exr") {
     Image& color = output.layers.front().image;
     color = inDisplayWindow(std::move(color), output.placement, source);
   }
@@ -113,7 +105,7 @@ Messages writeImage(const fs::path& path, const Image& color, const DisplayTrans
   if (color.channels != 1 && color.channels != 3 && color.channels != 4)
     throwInput("{}: an image of {} channels is no colour; it needs 1, 3 or 4", path.string(),
                color.channels);
-  if (extension(path) != ".exr") return writeColor(path, color, transform);
+  if (lowerExtension(path) != ".exr") return writeColor(path, color, transform);
   const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
   writeExr(path, OutputImage{{{"", letters, color}}, {}, {}, {}});
   return {};
@@ -131,15 +123,14 @@ std::optional<Message> uncoveredLight(const std::filesystem::path& path, const I
   constexpr float kVisible = 1.0f / 255;
   size_t pixels = 0;
   double lost = 0, light = 0;
-  for (int y = 0; y < color.height; ++y)
-    for (int x = 0; x < color.width; ++x) {
-      const Rgb rgb = color.rgb(x, y);
-      const float alpha = std::clamp(color.at(x, y)[3], 0.0f, 1.0f);
-      light += luminance(rgb);
-      if (alpha >= 0.5f || !(maxComponent(rgb) > alpha + kVisible)) continue;
-      ++pixels;
-      lost += luminance(glm::max(rgb - Rgb(alpha), Rgb(0)));
-    }
+  for (size_t i = 0; i < color.pixels(); ++i) {
+    const Rgb rgb = color.rgb(i);
+    const float alpha = std::clamp(color.at(i)[3], 0.0f, 1.0f);
+    light += luminance(rgb);
+    if (alpha >= 0.5f || !(maxComponent(rgb) > alpha + kVisible)) continue;
+    ++pixels;
+    lost += luminance(glm::max(rgb - Rgb(alpha), Rgb(0)));
+  }
   if (pixels == 0) return {};
   return warning(
       "{}: loses light on {:.2g}% of the pixels, {:.2g}% of the image's: a .png has no color "
@@ -155,10 +146,9 @@ struct NumbersBeyond {
 
   NumbersBeyond(const Image& color, float limit) {
     const int channels = std::min(color.channels, 3);
-    count = size_t(color.width) * size_t(color.height) * size_t(channels);
-    for (int y = 0; y < color.height; ++y)
-      for (int x = 0; x < color.width; ++x)
-        for (int c = 0; c < channels; ++c) add(color.at(x, y)[c], limit);
+    count = color.pixels() * size_t(channels);
+    for (size_t i = 0; i < color.pixels(); ++i)
+      for (int c = 0; c < channels; ++c) add(color.at(i)[c], limit);
   }
   double percent(size_t numbers) const { return 100. * double(numbers) / double(count); }
 
