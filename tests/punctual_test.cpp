@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Punctual lights: closed forms of their falloff and of the radiance of a plane.
 #include "lighting/punctual.h"
+#include "hypothesis.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,6 @@
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
-#include "measure/statistics.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "scene/gltf/load_gltf.h"
