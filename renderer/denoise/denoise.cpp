@@ -28,13 +28,12 @@ float normalization(std::span<const HalvedImage> images) {
 }
 
 Plane squares(const Plane& plane) {
-  return makePlane(plane.width(), plane.height(),
-                   [&](int x, int y) { return plane.at(x, y) * plane.at(x, y); });
+  return makePlaneLike(plane, [&](int x, int y) { return plane.at(x, y) * plane.at(x, y); });
 }
 
 // The variance of the mean of two halves.
 Plane varianceOf(const Plane& a, const Plane& b) {
-  const Plane squared = makePlane(a.width(), a.height(), [&](int x, int y) {
+  const Plane squared = makePlaneLike(a, [&](int x, int y) {
     const float half = (a.at(x, y) - b.at(x, y)) / 2;
     return half * half;
   });
@@ -56,9 +55,8 @@ HalfPlanes halvesOf(const HalvedImage& image, float scale) {
 
 Component componentOf(HalfPlanes halves) {
   Component component{std::move(halves), {}};
-  for (size_t c = 0; c < 3; ++c) {
+  for (size_t c = 0; c < 3; ++c)
     component.variance[c] = varianceOf(component.halves[0][c], component.halves[1][c]);
-  }
   return component;
 }
 
@@ -72,12 +70,10 @@ HalfGuides guidesOf(const HalvedImage& image, float scale) {
     const Plane noise = boxMean(squares(half), kHalvesReach);
     for (int i = 0; i < 2; ++i) {
       const float sign = i == 0 ? 1 : -1;
-      halves[size_t(i)].values.push_back(makePlane(mean.width(), mean.height(), [&](int x, int y) {
-        return scale * (mean.at(x, y) + sign * half.at(x, y));
-      }));
+      halves[size_t(i)].values.push_back(makePlaneLike(
+          mean, [&](int x, int y) { return scale * (mean.at(x, y) + sign * half.at(x, y)); }));
       halves[size_t(i)].variances.push_back(
-          makePlane(mean.width(), mean.height(),
-                    [&](int x, int y) { return 2 * scale * scale * noise.at(x, y); }));
+          makePlaneLike(mean, [&](int x, int y) { return 2 * scale * scale * noise.at(x, y); }));
     }
   }
   return halves;
@@ -94,10 +90,10 @@ FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& sto
     const HalfChannels halves = averageHalves(guidesOf(*image, scale), stop);
     for (size_t c = 0; c < halves[0].size(); ++c, ++at) {
       const Plane &a = halves[0][c], &b = halves[1][c];
-      const Plane values = makePlane(a.width(), a.height(),
-                                     [&](int x, int y) { return (a.at(x, y) + b.at(x, y)) / 2; });
+      const Plane values =
+          makePlaneLike(a, [&](int x, int y) { return (a.at(x, y) + b.at(x, y)) / 2; });
       const Plane noise = varianceOf(a, b);
-      features.ridges[at] = makePlane(a.width(), a.height(), [&](int x, int y) {
+      features.ridges[at] = makePlaneLike(a, [&](int x, int y) {
         const float size = kInsignificant * (isRelative ? values.at(x, y) : 1);
         return size * size + noise.at(x, y) + 1e-12f;
       });
@@ -115,13 +111,12 @@ HalfGuides guidesOf(const HalfPlanes& filtered, const Component& component) {
   HalfGuides guides;
   for (size_t c = 0; c < 3; ++c) {
     const Plane &a = filtered[0][c], &b = filtered[1][c];
-    const Plane between = boxMean(makePlane(a.width(), a.height(),
-                                            [&](int x, int y) {
-                                              const float difference = a.at(x, y) - b.at(x, y);
-                                              return difference * difference / 2;
-                                            }),
-                                  kReach);
-    const Plane variance = makePlane(a.width(), a.height(), [&](int x, int y) {
+    const Plane squared = makePlaneLike(a, [&](int x, int y) {
+      const float difference = a.at(x, y) - b.at(x, y);
+      return difference * difference / 2;
+    });
+    const Plane between = boxMean(squared, kReach);
+    const Plane variance = makePlaneLike(a, [&](int x, int y) {
       return between.at(x, y) + kRemaining * component.variance[c].at(x, y);
     });
     for (size_t half = 0; half < 2; ++half) {
@@ -138,8 +133,7 @@ RgbPlanes noiseOf(const HalvedImage& image, float scale) {
   for (int c = 0; c < 3; ++c) {
     const Plane mean = planeOf(image.mean, c), half = planeOf(image.half, c);
     const auto scaled = [&](const Plane& plane) {
-      return makePlane(plane.width(), plane.height(),
-                       [&](int x, int y) { return scale * plane.at(x, y); });
+      return makePlaneLike(plane, [&](int x, int y) { return scale * plane.at(x, y); });
     };
     noise[size_t(c)] = averageErrors(squares(scaled(half)), scaled(mean), kNoiseReach);
   }

@@ -37,7 +37,7 @@ RgbPlanes finished(const Predictions& predictions, const RgbPlanes& noisy) {
   const Plane& weights = predictions.weights;
   RgbPlanes result;
   for (size_t c = 0; c < 3; ++c)
-    result[c] = makePlane(weights.width(), weights.height(), [&](int x, int y) {
+    result[c] = makePlaneLike(weights, [&](int x, int y) {
       const float weight = weights.at(x, y);
       return weight > 0 ? predictions.weighted[c].at(x, y) / weight : noisy[c].at(x, y);
     });
@@ -121,9 +121,8 @@ HalfGuides guidesOf(const Component& component) {
     for (size_t c = 0; c < 3; ++c) {
       const Plane& variance = component.variance[c];
       guides[half].values.push_back(component.halves[half][c]);
-      guides[half].variances.push_back(
-          makePlane(variance.width(), variance.height(),
-                    [&](int x, int y) { return 2 * variance.at(x, y); }));  // half of the samples
+      guides[half].variances.push_back(makePlaneLike(
+          variance, [&](int x, int y) { return 2 * variance.at(x, y); }));  // half of the samples
     }
   return guides;
 }
@@ -167,7 +166,7 @@ constexpr float kFireflyWindow = (2 * kFireflyReach + 1) * (2 * kFireflyReach + 
 constexpr int kFireflyBiasReach = 3 * TileWeights::kReach;
 
 Plane energyOf(const RgbPlanes& image) {
-  return makePlane(image[0].width(), image[0].height(), [&](int x, int y) {
+  return makePlaneLike(image[0], [&](int x, int y) {
     float sum = 0;
     for (const Plane& channel : image) sum += channel.at(x, y) * channel.at(x, y);
     return sum;
@@ -177,7 +176,7 @@ Plane energyOf(const RgbPlanes& image) {
 // The factors of the pixels of a half with `energy`.
 Plane factorsOf(const Plane& energy, const Plane& otherEnergy) {
   const Plane support = boxMean(otherEnergy, kFireflyReach);
-  return makePlane(energy.width(), energy.height(), [&](int x, int y) {
+  return makePlaneLike(energy, [&](int x, int y) {
     const float limit = kFireflyWindow * support.at(x, y);
     return energy.at(x, y) > limit ? std::sqrt(limit / energy.at(x, y)) : 1.0f;
   });
@@ -203,8 +202,7 @@ Plane limitFireflies(HalfPlanes& halves) {
   const std::array<Plane, 2> energies{energyOf(halves[0]), energyOf(halves[1])};
   const Plane a = limit(halves[0], factorsOf(energies[0], energies[1]));
   const Plane b = limit(halves[1], factorsOf(energies[1], energies[0]));
-  return makePlane(a.width(), a.height(),
-                   [&](int x, int y) { return std::fabs(a.at(x, y) * b.at(x, y)); });
+  return makePlaneLike(a, [&](int x, int y) { return std::fabs(a.at(x, y) * b.at(x, y)); });
 }
 
 }  // namespace chromeball

@@ -60,6 +60,12 @@ Plane makePlane(int width, int height, const Value& value) {
   return plane;
 }
 
+// The same, of the size of another plane.
+template <class Value>
+Plane makePlaneLike(const Plane& like, const Value& value) {
+  return makePlane(like.width(), like.height(), value);
+}
+
 Plane planeOf(const Image& image, int channel);
 
 // The mean over the window of 2 reach + 1 columns and rows around each pixel.
