@@ -3,6 +3,7 @@
 // allocated.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 
@@ -29,6 +30,17 @@ inline void checkImageSize(const std::filesystem::path& path, int64_t width, int
     throwInput("{}: {} x {} texels with {} channels exceed the limit of {} numbers per image",
                path.string(), width, height, channels, maxNumbers);
 }
+
+// Throws InputError if a file of `fileBytes` cannot hold `bytes` of texels, each of its bytes at
+// most `maxRatio`; small images may have any ratio.
+inline void checkFileLength(const std::filesystem::path& path, int width, int height,
+                            uint64_t bytes, uint64_t fileBytes, uint64_t maxRatio) {
+  constexpr uint64_t kAlwaysAllowed = 64 << 20;
+  if (bytes > std::max(kAlwaysAllowed, fileBytes * maxRatio))
+    throwInput("{}: too short for {} x {} texels", path.string(), width, height);
+}
+// For a compression without a known bound: an estimate.
+inline constexpr uint64_t kMaxUnknownRatio = 100'000;
 
 // Throws InputError if an image with these numbers, of `bytes` each, and its copies do not fit into
 // the memory that the process may use. For whole images that are read from a file or made for one,

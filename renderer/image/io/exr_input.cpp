@@ -78,15 +78,6 @@ uint64_t bytesPerTexel(const Imf::ChannelList& channels) {
   return bytes;
 }
 
-// The compression ratio of OpenEXR has no known bound; kMaxRatio is an estimate, which small images
-// may exceed.
-void checkExrLength(const fs::path& path, int width, int height, uint64_t texelBytes) {
-  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxRatio = 100'000;
-  const uint64_t bytes = uint64_t(width) * uint64_t(height) * texelBytes;
-  if (bytes > std::max(kAlwaysAllowed, uint64_t(fs::file_size(path)) * kMaxRatio))
-    throwInput("{}: too short for {} x {} texels", path.string(), width, height);
-}
-
 }  // namespace
 
 // The channels as stored: luminance and chroma, if any, not the colour that they encode.
@@ -198,7 +189,9 @@ void ExrInput::readHeader() {
   contents_.placement = placementOf(window, header.displayWindow());
   contents_.primaries = chromaticitiesOf(header);
   pixelAspectRatio_ = header.pixelAspectRatio();
-  checkExrLength(path_, width_, height_, bytesPerTexel(header.channels()));
+  checkFileLength(path_, width_, height_,
+                  uint64_t(width_) * uint64_t(height_) * bytesPerTexel(header.channels()),
+                  fs::file_size(path_), kMaxUnknownRatio);
   contents_.channels = channelsOf(header.channels());
   if (isLuminanceChroma(header.channels())) {
     if (parts.size() > 1)

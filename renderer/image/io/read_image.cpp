@@ -131,12 +131,9 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   const std::vector<uint8_t> bytes = readFile(path);
   const auto check = [&](const SampleLayout& layout) {
     checkImageSize(path, layout.width, layout.height, layout.channels);
-    // Small images may have any ratio.
-    constexpr uint64_t kAlwaysAllowed = 64 << 20;
     const uint64_t decoded =
         uint64_t(layout.width) * layout.height * layout.channels * (layout.bits / 8);
-    if (decoded > std::max(kAlwaysAllowed, bytes.size() * kMaxDeflateRatio))
-      throwInput("{}: too short for {} x {} texels", path.string(), layout.width, layout.height);
+    checkFileLength(path, layout.width, layout.height, decoded, bytes.size(), kMaxDeflateRatio);
     checkImageMemory(path, layout.width, layout.height, layout.channels);
   };
   const auto reader = format == ImageFormat::Png ? openPng(bytes, check) : openJpeg(bytes, check);

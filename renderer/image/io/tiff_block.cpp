@@ -10,8 +10,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "image/size_limits.h"
-
 namespace chromeball {
 namespace {
 
@@ -29,22 +27,9 @@ enum TiffType : uint16_t {
 
 // The size of an unsigned integer type; 0 for another type.
 uint64_t integerBytes(uint64_t type) {
-  switch (type) {
-    case kShort:
-      return 2;
-    case kLong:
-    case kIfd:
-      return 4;
-    case kLong8:
-    case kIfd8:
-      return 8;
-    default:
-      return 0;
-  }
-}
-
-std::optional<double> positiveOrNone(double number) {
-  return number > 0 && std::isfinite(number) ? std::optional(number) : std::nullopt;
+  if (type == kShort) return 2;
+  if (type == kLong || type == kIfd) return 4;
+  return type == kLong8 || type == kIfd8 ? 8 : 0;
 }
 
 }  // namespace
@@ -76,26 +61,28 @@ uint64_t TiffBlock::nextDirectory(uint64_t directory) const {
 }
 
 std::optional<double> TiffBlock::find(uint64_t directory, uint16_t tag) const {
-  const std::optional<uint64_t> entry = entryOf(directory, tag);
-  if (!entry) return std::nullopt;
-  const uint64_t at = *entry + 4 + offsetBytes(), type = number(*entry + 2, 2);
-  if (type == kRational) {
-    const uint64_t rational = isBig_ ? at : number(at, 4);
-    return positiveOrNone(double(number(rational, 4)) / double(number(rational + 4, 4)));
-  }
-  const std::vector<uint64_t> values = integers(directory, tag);
-  return values.empty() ? std::nullopt : positiveOrNone(double(values.front()));
+  const std::vector<double> ratios = rationals(directory, tag);
+  const std::vector<uint64_t> whole = integers(directory, tag);
+  const double first = !ratios.empty()  ? ratios.front()
+                       : !whole.empty() ? double(whole.front())
+                                        : 0;
+  return first > 0 && std::isfinite(first) ? std::optional(first) : std::nullopt;
+}
+
+// The values are in the entry if they fit into it.
+TiffBlock::Values TiffBlock::valuesOf(uint64_t entry, uint64_t bytesOfEach) const {
+  const uint64_t count = number(entry + 4, offsetBytes()), field = entry + 4 + offsetBytes();
+  const uint64_t most = std::min(count, bytes_.size() / bytesOfEach);
+  return {count, most, bytesOfEach * most <= offsetBytes() ? field : number(field, offsetBytes())};
 }
 
 std::vector<double> TiffBlock::rationals(uint64_t directory, uint16_t tag) const {
   constexpr uint64_t kBytes = 8;
   const std::optional<uint64_t> entry = entryOf(directory, tag);
   if (!entry || number(*entry + 2, 2) != kRational) return {};
-  const uint64_t count = std::min(number(*entry + 4, offsetBytes()), bytes_.size() / kBytes);
-  const uint64_t field = *entry + 4 + offsetBytes();  // has the value if it fits into it
-  const uint64_t at = kBytes * count <= offsetBytes() ? field : number(field, offsetBytes());
+  const auto [count, most, at] = valuesOf(*entry, kBytes);
   std::vector<double> values;
-  for (uint64_t i = 0; i < count; ++i)
+  for (uint64_t i = 0; i < most; ++i)
     values.push_back(double(number(at + i * kBytes, 4)) / double(number(at + i * kBytes + 4, 4)));
   return values;
 }
@@ -104,22 +91,18 @@ std::vector<uint64_t> TiffBlock::integers(uint64_t directory, uint16_t tag) cons
   const std::optional<uint64_t> entry = entryOf(directory, tag);
   const uint64_t bytes = entry ? integerBytes(number(*entry + 2, 2)) : 0;
   if (bytes == 0) return {};
-  const uint64_t count = std::min(number(*entry + 4, offsetBytes()), bytes_.size() / bytes);
-  const uint64_t field = *entry + 4 + offsetBytes();  // has the values if they fit into it
-  const uint64_t at = bytes * count <= offsetBytes() ? field : number(field, offsetBytes());
+  const auto [count, most, at] = valuesOf(*entry, bytes);
   std::vector<uint64_t> values;
-  for (uint64_t i = 0; i < count; ++i) values.push_back(number(at + i * bytes, bytes));
+  for (uint64_t i = 0; i < most; ++i) values.push_back(number(at + i * bytes, bytes));
   return values;
 }
 
 std::span<const uint8_t> TiffBlock::bytes(uint64_t directory, uint16_t tag) const {
   const std::optional<uint64_t> entry = entryOf(directory, tag);
-  if (!entry) return {};
-  const uint64_t type = number(*entry + 2, 2), count = number(*entry + 4, offsetBytes());
-  const uint64_t field = *entry + 4 + offsetBytes();  // has the value if it fits into it
-  const uint64_t at = count <= offsetBytes() ? field : number(field, offsetBytes());
-  if ((type != kByte && type != kUndefined) || at > bytes_.size() || count > bytes_.size() - at)
-    return {};
+  const uint64_t type = entry ? number(*entry + 2, 2) : 0;
+  if (type != kByte && type != kUndefined) return {};
+  const auto [count, most, at] = valuesOf(*entry, 1);
+  if (at > bytes_.size() || count > bytes_.size() - at) return {};
   return bytes_.subspan(at, count);
 }
 

@@ -133,7 +133,7 @@ double maxRatioOf(int compression, double width) {
     case kPackBits:
       return 64;  // 128 bytes in 2
     default:
-      return 100'000;  // an estimate: LZMA and Zstandard repeat a byte almost for ever
+      return double(kMaxUnknownRatio);  // LZMA and Zstandard repeat a byte almost for ever
   }
 }
 
