@@ -36,6 +36,49 @@ void refuseNul(const fs::path& path) {
     throwInput("{}: the file name contains U+0000", path.string());
 }
 
+uint64_t hashOfText(std::string_view text) {
+  uint64_t sum = 0;
+  for (const char letter : text) sum = hash(sum ^ static_cast<unsigned char>(letter));
+  return sum;
+}
+
+// A few letters.
+std::string machineName() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return fmt::format("{:08x}", uint32_t(hashOfText({name.data(), name.size()})));
+}
+
+// Whether the path still names a file that was opened: the process that held its lock may have
+// renamed or removed it meanwhile.
+bool isStillNamed(int file, const fs::path& path) {
+  struct stat opened {
+  }, named{};
+  return fstat(file, &opened) == 0 && stat(path.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+// Creates or empties a file that no other process has locked; -1 if that is not possible.
+int openLocked(const fs::path& path) {
+  const int file = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (file < 0) return -1;
+  if (flock(file, LOCK_EX | LOCK_NB) == 0 && isStillNamed(file, path) && ftruncate(file, 0) == 0)
+    return file;
+  close(file);
+  return -1;
+}
+
+// The file's part of a temporary name: all of its name, or the beginning of a long one and a hash,
+// so that a temporary file is possible wherever the file is.
+std::string stemOf(const fs::path& file) {
+  constexpr size_t kRest = 64;  // for the hash, the machine, the process and what is between them
+  const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  const size_t longest = size_t(std::max(pathconf(folder.c_str(), _PC_NAME_MAX), long(kRest)));
+  const std::string name = file.filename().string();
+  if (name.size() + kRest <= longest) return name;
+  return fmt::format("{}{:016x}", name.substr(0, longest - kRest), hashOfText(name));
+}
+
 }  // namespace
 
 void checkReadable(const fs::path& path) {
@@ -129,53 +172,6 @@ uint64_t fingerprint(const std::string& path) {
   }
   return state;
 }
-
-namespace {
-
-uint64_t hashOfText(std::string_view text) {
-  uint64_t sum = 0;
-  for (const char letter : text) sum = hash(sum ^ static_cast<unsigned char>(letter));
-  return sum;
-}
-
-// A few letters.
-std::string machineName() {
-  std::array<char, 256> name{};
-  gethostname(name.data(), name.size() - 1);
-  return fmt::format("{:08x}", uint32_t(hashOfText({name.data(), name.size()})));
-}
-
-// Whether the path still names a file that was opened: the process that held its lock may have
-// renamed or removed it meanwhile.
-bool isStillNamed(int file, const fs::path& path) {
-  struct stat opened {
-  }, named{};
-  return fstat(file, &opened) == 0 && stat(path.c_str(), &named) == 0 &&
-         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
-}
-
-// Creates or empties a file that no other process has locked; -1 if that is not possible.
-int openLocked(const fs::path& path) {
-  const int file = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (file < 0) return -1;
-  if (flock(file, LOCK_EX | LOCK_NB) == 0 && isStillNamed(file, path) && ftruncate(file, 0) == 0)
-    return file;
-  close(file);
-  return -1;
-}
-
-// The file's part of a temporary name: all of its name, or the beginning of a long one and a hash,
-// so that a temporary file is possible wherever the file is.
-std::string stemOf(const fs::path& file) {
-  constexpr size_t kRest = 64;  // for the hash, the machine, the process and what is between them
-  const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
-  const size_t longest = size_t(std::max(pathconf(folder.c_str(), _PC_NAME_MAX), long(kRest)));
-  const std::string name = file.filename().string();
-  if (name.size() + kRest <= longest) return name;
-  return fmt::format("{}{:016x}", name.substr(0, longest - kRest), hashOfText(name));
-}
-
-}  // namespace
 
 fs::path replaceableFile(const fs::path& path) {
   constexpr int kMostLinks = 40;  // as Linux follows

@@ -90,6 +90,43 @@ void copyTile(const std::vector<Plane>& from, int left, int top, int right, int 
       std::copy(from[c].row(y) + left, from[c].row(y) + right, to[c].row(y) + left);
 }
 
+// The reach of the window that must hold as much light in the other half. A window as wide as the
+// filter's has light of other objects, which says nothing about this pixel.
+constexpr int kFireflyReach = 2;
+constexpr float kFireflyWindow = (2 * kFireflyReach + 1) * (2 * kFireflyReach + 1);
+constexpr int kFireflyBiasReach = 3 * TileWeights::kReach;
+
+Plane energyOf(const RgbPlanes& image) {
+  return makePlaneLike(image[0], [&](int x, int y) {
+    float sum = 0;
+    for (const Plane& channel : image) sum += channel.at(x, y) * channel.at(x, y);
+    return sum;
+  });
+}
+
+// The factors of the pixels of a half with `energy`.
+Plane factorsOf(const Plane& energy, const Plane& otherEnergy) {
+  const Plane support = boxMean(otherEnergy, kFireflyReach);
+  return makePlaneLike(energy, [&](int x, int y) {
+    const float limit = kFireflyWindow * support.at(x, y);
+    return energy.at(x, y) > limit ? std::sqrt(limit / energy.at(x, y)) : 1.0f;
+  });
+}
+
+// Scales the pixels of a half. Returns the mean light over the channels that is removed around each
+// pixel.
+Plane limit(RgbPlanes& half, const Plane& factors) {
+  const int width = factors.width(), height = factors.height();
+  const Plane removed = makePlane(width, height, [&](int x, int y) {
+    const float sum = half[0].at(x, y) + half[1].at(x, y) + half[2].at(x, y);
+    return (1 - factors.at(x, y)) * sum / 3;
+  });
+  for (Plane& channel : half)
+    channel =
+        makePlane(width, height, [&](int x, int y) { return factors.at(x, y) * channel.at(x, y); });
+  return boxMean(removed, kFireflyBiasReach);
+}
+
 }  // namespace
 
 HalfChannels averageHalves(const HalfGuides& halves, const std::atomic<bool>& stop) {
@@ -156,47 +193,6 @@ FilteredHalves filterHalves(const Component& component, const HalfGuides& guides
   }
   return results;
 }
-
-namespace {
-
-// The reach of the window that must hold as much light in the other half. A window as wide as the
-// filter's has light of other objects, which says nothing about this pixel.
-constexpr int kFireflyReach = 2;
-constexpr float kFireflyWindow = (2 * kFireflyReach + 1) * (2 * kFireflyReach + 1);
-constexpr int kFireflyBiasReach = 3 * TileWeights::kReach;
-
-Plane energyOf(const RgbPlanes& image) {
-  return makePlaneLike(image[0], [&](int x, int y) {
-    float sum = 0;
-    for (const Plane& channel : image) sum += channel.at(x, y) * channel.at(x, y);
-    return sum;
-  });
-}
-
-// The factors of the pixels of a half with `energy`.
-Plane factorsOf(const Plane& energy, const Plane& otherEnergy) {
-  const Plane support = boxMean(otherEnergy, kFireflyReach);
-  return makePlaneLike(energy, [&](int x, int y) {
-    const float limit = kFireflyWindow * support.at(x, y);
-    return energy.at(x, y) > limit ? std::sqrt(limit / energy.at(x, y)) : 1.0f;
-  });
-}
-
-// Scales the pixels of a half. Returns the mean light over the channels that is removed around each
-// pixel.
-Plane limit(RgbPlanes& half, const Plane& factors) {
-  const int width = factors.width(), height = factors.height();
-  const Plane removed = makePlane(width, height, [&](int x, int y) {
-    const float sum = half[0].at(x, y) + half[1].at(x, y) + half[2].at(x, y);
-    return (1 - factors.at(x, y)) * sum / 3;
-  });
-  for (Plane& channel : half)
-    channel =
-        makePlane(width, height, [&](int x, int y) { return factors.at(x, y) * channel.at(x, y); });
-  return boxMean(removed, kFireflyBiasReach);
-}
-
-}  // namespace
 
 Plane limitFireflies(HalfPlanes& halves) {
   const std::array<Plane, 2> energies{energyOf(halves[0]), energyOf(halves[1])};

@@ -23,6 +23,10 @@ glm::dvec4 squaredDeviations(const glm::dvec4& sumOfSquares, const glm::dvec3& s
   return deviations * (count / (count - 1));
 }
 
+void subtract(Image& a, const Image& b) {
+  for (size_t i = 0; i < a.texels.size(); ++i) a.texels[i] -= b.texels[i];
+}
+
 }  // namespace
 
 Film::Film(int width, int height)
@@ -154,14 +158,6 @@ PixelErrors Film::errors() const {
   });
   return errors;
 }
-
-namespace {
-
-void subtract(Image& a, const Image& b) {
-  for (size_t i = 0; i < a.texels.size(); ++i) a.texels[i] -= b.texels[i];
-}
-
-}  // namespace
 
 HalvedImage operator-(HalvedImage a, const HalvedImage& b) {
   subtract(a.mean, b.mean);

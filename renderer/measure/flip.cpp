@@ -169,30 +169,6 @@ double colorError(const dvec3& a, const dvec3& b) {
   return kAtKnee + (difference - knee) / (kMax - knee) * (1 - kAtKnee);
 }
 
-}  // namespace
-
-Image flip(const Image& reference, const Image& test, double pixelsPerDegree) {
-  if (reference.width != test.width || reference.height != test.height)
-    throwInput("the images differ in size: {} x {} and {} x {}", reference.width, reference.height,
-               test.width, test.height);
-  constexpr double kPower = 0.5;
-  const Percept r = perceive(reference, pixelsPerDegree), t = perceive(test, pixelsPerDegree);
-  Image error(reference.width, reference.height, 1);
-  for (size_t i = 0; i < error.texels.size(); ++i) {
-    const double difference =
-        std::max(std::fabs(r.edges[i] - t.edges[i]), std::fabs(r.points[i] - t.points[i]));
-    const double feature = std::pow(difference / std::sqrt(2), kPower);
-    error.texels[i] = float(std::pow(colorError(r.lab[i], t.lab[i]), 1 - feature));
-  }
-  return error;
-}
-
-// FLIP for images of high dynamic range: the maximum over exposures.
-
-namespace {
-
-using dvec3 = glm::dvec3;
-
 // The tone mapper (a x^2 + b x) / (c x^2 + d x + e).
 constexpr double kA = 0.36 * 2.51, kB = 0.6 * 0.03, kC = 0.36 * 2.43, kD = 0.6 * 0.59, kE = 0.14;
 
@@ -214,6 +190,24 @@ Image exposed(const Image& image, double stops) {
 }
 
 }  // namespace
+
+Image flip(const Image& reference, const Image& test, double pixelsPerDegree) {
+  if (reference.width != test.width || reference.height != test.height)
+    throwInput("the images differ in size: {} x {} and {} x {}", reference.width, reference.height,
+               test.width, test.height);
+  constexpr double kPower = 0.5;
+  const Percept r = perceive(reference, pixelsPerDegree), t = perceive(test, pixelsPerDegree);
+  Image error(reference.width, reference.height, 1);
+  for (size_t i = 0; i < error.texels.size(); ++i) {
+    const double difference =
+        std::max(std::fabs(r.edges[i] - t.edges[i]), std::fabs(r.points[i] - t.points[i]));
+    const double feature = std::pow(difference / std::sqrt(2), kPower);
+    error.texels[i] = float(std::pow(colorError(r.lab[i], t.lab[i]), 1 - feature));
+  }
+  return error;
+}
+
+// FLIP for images of high dynamic range: the maximum over exposures.
 
 Image hdrFlip(const Image& reference, const Image& test, double pixelsPerDegree) {
   std::vector<double> luminances;

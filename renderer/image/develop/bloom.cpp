@@ -37,6 +37,32 @@ void blurLines(Image& image, const GaussianLine& gaussian, size_t groups, size_t
   });
 }
 
+constexpr double kCore = 0.02;  // degrees; the arrays are for f0, f1 and f2
+constexpr double kWeights[] = {0.384, 0.478, 0.138};
+constexpr double kFactors[] = {2.61e6, 20.91, 72.37};
+constexpr double kDegree2 = kPiD / 180 * (kPiD / 180);  // steradians
+
+// The integral of v^n exp(-b v - v^2) over v from 0.
+double moment(int n, double b) {
+  constexpr int kSteps = 4000;
+  const double end = std::min(7.0, 40 / (b + 1e-9)), step = end / kSteps;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double v = (i + 0.5) * step;
+    sum += std::pow(v, n) * std::exp(-b * v - v * v);
+  }
+  return sum * step;
+}
+
+// W with (x + a)^-n = integral of W(s) exp(-s x^2) over s from 0, for x >= 0: the Laplace
+// transforms of t^(n-1) e^-ta / (n-1)! and of exp(-t x) = integral of t / (2 sqrt(pi s^3)) exp(-t^2
+// / 4s) exp(-s x^2) over s, with t = 2 v sqrt(s).
+double gaussianDensity(int n, double s) {
+  const double root = std::sqrt(s);
+  return std::pow(2 * root, n + 1) * moment(n, 2 * kCore * root) /
+         (2 * std::sqrt(kPiD) * s * root * std::tgamma(n));
+}
+
 }  // namespace
 
 void blurGaussian(Image& image, double sigma, GaussianMethod method) {
@@ -67,36 +93,6 @@ Image bloom(const Image& image, const std::vector<WeightedGaussian>& mixture,
   }
   return sum;
 }
-
-namespace {
-
-constexpr double kCore = 0.02;  // degrees; the arrays are for f0, f1 and f2
-constexpr double kWeights[] = {0.384, 0.478, 0.138};
-constexpr double kFactors[] = {2.61e6, 20.91, 72.37};
-constexpr double kDegree2 = kPiD / 180 * (kPiD / 180);  // steradians
-
-// The integral of v^n exp(-b v - v^2) over v from 0.
-double moment(int n, double b) {
-  constexpr int kSteps = 4000;
-  const double end = std::min(7.0, 40 / (b + 1e-9)), step = end / kSteps;
-  double sum = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    const double v = (i + 0.5) * step;
-    sum += std::pow(v, n) * std::exp(-b * v - v * v);
-  }
-  return sum * step;
-}
-
-// W with (x + a)^-n = integral of W(s) exp(-s x^2) over s from 0, for x >= 0: the Laplace
-// transforms of t^(n-1) e^-ta / (n-1)! and of exp(-t x) = integral of t / (2 sqrt(pi s^3)) exp(-t^2
-// / 4s) exp(-s x^2) over s, with t = 2 v sqrt(s).
-double gaussianDensity(int n, double s) {
-  const double root = std::sqrt(s);
-  return std::pow(2 * root, n + 1) * moment(n, 2 * kCore * root) /
-         (2 * std::sqrt(kPiD) * s * root * std::tgamma(n));
-}
-
-}  // namespace
 
 double spencerSpread(double angle) {
   const double x = angle / kCore, y = angle + kCore;

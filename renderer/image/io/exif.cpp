@@ -133,6 +133,33 @@ Exif fromAttributes(const Metadata& metadata) {
   return {find("expTime"), find("aperture"), find("isoSpeed"), {}};
 }
 
+// The ratio of two numbers of `size` bytes, the width's first.
+double ratioIn(std::span<const uint8_t> data, size_t at, size_t size) {
+  if (data.size() < at + 2 * size) return 1;
+  return double(bigEndian(data.subspan(at + size, size))) /
+         double(bigEndian(data.subspan(at, size)));
+}
+
+// Resolutions are pixels per length, of any unit.
+double statedRatio(std::span<const uint8_t> file) {
+  constexpr uint16_t kXResolution = 282, kYResolution = 283;
+  switch (imageFormat(file)) {
+    case ImageFormat::Jpeg:
+      // JFIF 1.02; after the version and the unit.
+      return ratioIn(segmentOf(file, kApp0, std::string_view("JFIF\0", 5)), 3, 2);
+    case ImageFormat::Png:
+      return ratioIn(pngChunk(file, "pHYs"), 0, 4);
+    case ImageFormat::Tiff: {
+      const TiffBlock tiff(file);
+      const auto x = tiff.find(tiff.firstDirectory(), kXResolution),
+                 y = tiff.find(tiff.firstDirectory(), kYResolution);
+      return x && y ? *y / *x : 1;
+    }
+    default:
+      return 1;
+  }
+}
+
 }  // namespace
 
 Exif readExif(const std::filesystem::path& path) {
@@ -200,37 +227,6 @@ std::optional<std::vector<uint8_t>> pngProfile(std::span<const uint8_t> file) {
   profile.resize(isSound ? size : 0);
   return profile;
 }
-
-namespace {
-
-// The ratio of two numbers of `size` bytes, the width's first.
-double ratioIn(std::span<const uint8_t> data, size_t at, size_t size) {
-  if (data.size() < at + 2 * size) return 1;
-  return double(bigEndian(data.subspan(at + size, size))) /
-         double(bigEndian(data.subspan(at, size)));
-}
-
-// Resolutions are pixels per length, of any unit.
-double statedRatio(std::span<const uint8_t> file) {
-  constexpr uint16_t kXResolution = 282, kYResolution = 283;
-  switch (imageFormat(file)) {
-    case ImageFormat::Jpeg:
-      // JFIF 1.02; after the version and the unit.
-      return ratioIn(segmentOf(file, kApp0, std::string_view("JFIF\0", 5)), 3, 2);
-    case ImageFormat::Png:
-      return ratioIn(pngChunk(file, "pHYs"), 0, 4);
-    case ImageFormat::Tiff: {
-      const TiffBlock tiff(file);
-      const auto x = tiff.find(tiff.firstDirectory(), kXResolution),
-                 y = tiff.find(tiff.firstDirectory(), kYResolution);
-      return x && y ? *y / *x : 1;
-    }
-    default:
-      return 1;
-  }
-}
-
-}  // namespace
 
 double pixelAspectRatio(std::span<const uint8_t> file) {
   constexpr double kTolerance = 0.01;

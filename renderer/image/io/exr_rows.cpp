@@ -104,6 +104,21 @@ int rowsAtOnce(const ExrLayout& layout) {
                                  kMost));
 }
 
+std::vector<std::string> channelsOf(const OutputImage& output) {
+  std::vector<std::string> names;
+  for (const Layer& layer : output.layers) {
+    if (layer.channels.empty()) names.push_back(layer.name);
+    for (const char letter : layer.channels)
+      names.push_back(layer.name.empty() ? std::string(1, letter) : layer.name + '.' + letter);
+  }
+  return names;
+}
+
+const fs::path& checkedExr(const fs::path& path) {
+  if (imageFormat(path) != ImageFormat::Exr) throwUnreadable(path, "it is not an EXR file");
+  return path;
+}
+
 }  // namespace
 
 class ExrRowsWriter::Output {
@@ -208,20 +223,6 @@ double ExrRowsWriter::bufferBytes(int width, size_t channels) {
   return 1.5 * atOnce + 2.0 * std::thread::hardware_concurrency() * 3 * row;
 }
 
-namespace {
-
-std::vector<std::string> channelsOf(const OutputImage& output) {
-  std::vector<std::string> names;
-  for (const Layer& layer : output.layers) {
-    if (layer.channels.empty()) names.push_back(layer.name);
-    for (const char letter : layer.channels)
-      names.push_back(layer.name.empty() ? std::string(1, letter) : layer.name + '.' + letter);
-  }
-  return names;
-}
-
-}  // namespace
-
 void writeExr(const std::filesystem::path& path, const OutputImage& output) {
   const Image& first = output.layers.front().image;
   ExrRowsWriter writer(path, {.width = first.width,
@@ -234,15 +235,6 @@ void writeExr(const std::filesystem::path& path, const OutputImage& output) {
   writer.write(images);
   writer.commit(output.state);
 }
-
-namespace {
-
-const fs::path& checkedExr(const fs::path& path) {
-  if (imageFormat(path) != ImageFormat::Exr) throwUnreadable(path, "it is not an EXR file");
-  return path;
-}
-
-}  // namespace
 
 ExrRowsReader::ExrRowsReader(const fs::path& path, uint64_t maxNumbers)
     : ExrInput(checkedExr(path), maxNumbers) {

@@ -103,17 +103,6 @@ class StateReader : public MemoryReader {
   size_t next_ = 0;  // block
 };
 
-}  // namespace
-
-void readExrState(const fs::path& path, const std::function<void(Archive&)>& read) {
-  const SharedFile file(path);
-  const Layout layout = readLayout(file, fs::file_size(path));
-  StateReader reader(file, layout);
-  read(reader);
-}
-
-namespace {
-
 // Items are numbers with few bytes that differ: the counts and weights of pixels, the low bytes of
 // sums of few samples. Blosc sorts them by byte.
 class BlockWriter : public MemoryWriter {
@@ -181,6 +170,13 @@ class StateWriter : public MemoryWriter {
 };
 
 }  // namespace
+
+void readExrState(const fs::path& path, const std::function<void(Archive&)>& read) {
+  const SharedFile file(path);
+  const Layout layout = readLayout(file, fs::file_size(path));
+  StateReader reader(file, layout);
+  read(reader);
+}
 
 void appendExrState(const fs::path& file, const fs::path& path,
                     const std::function<void(Archive&)>& state) {

@@ -96,30 +96,6 @@ PngColor colorOfCodePoints(std::span<const uint8_t> chunk) {
   return color;
 }
 
-}  // namespace
-
-PngColor pngColor(std::span<const uint8_t> file) {
-  constexpr size_t kCodePoints = 4;
-  if (const auto chunk = pngChunk(file, "cICP"); chunk.size() == kCodePoints)
-    return colorOfCodePoints(chunk);
-  if (!pngChunk(file, "sRGB").empty()) return {.transfer = Transfer::Srgb};
-  PngColor color;
-  if (const auto gamma = numbersIn<1>(pngChunk(file, "gAMA")); gamma && (*gamma)[0] > 0) {
-    // Writers of sRGB state 1/2.2, a power near its curve.
-    constexpr double kOfSrgb = 1 / 2.2, kTolerance = 0.05;
-    const double exponent = 1 / (*gamma)[0];
-    const bool isSrgb = std::abs((*gamma)[0] / kOfSrgb - 1) <= kTolerance;
-    color.transfer = isSrgb ? Transfer::Srgb : exponent == 1 ? Transfer::Linear : Transfer::Other;
-    if (!isSrgb) color.decode = powerCurve(exponent);
-  }
-  if (const auto n = numbersIn<8>(pngChunk(file, "cHRM")))
-    color.primaries = Chromaticities{
-        {(*n)[2], (*n)[3]}, {(*n)[4], (*n)[5]}, {(*n)[6], (*n)[7]}, {(*n)[0], (*n)[1]}};
-  return color;
-}
-
-namespace {
-
 static_assert(std::endian::native == std::endian::little);
 
 class PngReader : public SampleReader {
@@ -211,6 +187,26 @@ class PngReader : public SampleReader {
 };
 
 }  // namespace
+
+PngColor pngColor(std::span<const uint8_t> file) {
+  constexpr size_t kCodePoints = 4;
+  if (const auto chunk = pngChunk(file, "cICP"); chunk.size() == kCodePoints)
+    return colorOfCodePoints(chunk);
+  if (!pngChunk(file, "sRGB").empty()) return {.transfer = Transfer::Srgb};
+  PngColor color;
+  if (const auto gamma = numbersIn<1>(pngChunk(file, "gAMA")); gamma && (*gamma)[0] > 0) {
+    // Writers of sRGB state 1/2.2, a power near its curve.
+    constexpr double kOfSrgb = 1 / 2.2, kTolerance = 0.05;
+    const double exponent = 1 / (*gamma)[0];
+    const bool isSrgb = std::abs((*gamma)[0] / kOfSrgb - 1) <= kTolerance;
+    color.transfer = isSrgb ? Transfer::Srgb : exponent == 1 ? Transfer::Linear : Transfer::Other;
+    if (!isSrgb) color.decode = powerCurve(exponent);
+  }
+  if (const auto n = numbersIn<8>(pngChunk(file, "cHRM")))
+    color.primaries = Chromaticities{
+        {(*n)[2], (*n)[3]}, {(*n)[4], (*n)[5]}, {(*n)[6], (*n)[7]}, {(*n)[0], (*n)[1]}};
+  return color;
+}
 
 std::unique_ptr<SampleReader> openPng(std::span<const uint8_t> file, const CheckSize& check) {
   return std::make_unique<PngReader>(file, check);

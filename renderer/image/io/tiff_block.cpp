@@ -32,6 +32,35 @@ uint64_t integerBytes(uint64_t type) {
   return type == kLong8 || type == kIfd8 ? 8 : 0;
 }
 
+class Inflater {
+ public:
+  Inflater() {
+    if (inflateInit(&stream_) != Z_OK) throw std::runtime_error("zlib does not start");
+  }
+  ~Inflater() { inflateEnd(&stream_); }
+  Inflater(const Inflater&) = delete;
+
+  // Whether the block is undamaged, as far as `budget` allows, a number of bytes that is reduced by
+  // the inflated size.
+  bool isSound(std::span<const uint8_t> block, double& budget) {
+    inflateReset(&stream_);
+    stream_.next_in = const_cast<uint8_t*>(block.data());
+    stream_.avail_in = uInt(block.size());
+    int state = Z_OK;
+    while (state == Z_OK && budget > 0) {
+      stream_.next_out = inflated_.data();
+      stream_.avail_out = uInt(inflated_.size());
+      state = inflate(&stream_, Z_NO_FLUSH);
+      budget -= double(inflated_.size() - stream_.avail_out);
+    }
+    return state != Z_DATA_ERROR && state != Z_NEED_DICT;
+  }
+
+ private:
+  z_stream stream_{};
+  std::array<uint8_t, 1 << 15> inflated_;
+};
+
 }  // namespace
 
 uint64_t TiffBlock::number(uint64_t at, uint64_t count) const {
@@ -123,39 +152,6 @@ std::vector<uint8_t> TiffBlock::withInteger(uint64_t directory, uint16_t tag,
   const uint64_t entry = entryOf(directory, tag).value();
   return changed(entry + 4 + offsetBytes(), integerBytes(number(entry + 2, 2)), value);
 }
-
-namespace {
-
-class Inflater {
- public:
-  Inflater() {
-    if (inflateInit(&stream_) != Z_OK) throw std::runtime_error("zlib does not start");
-  }
-  ~Inflater() { inflateEnd(&stream_); }
-  Inflater(const Inflater&) = delete;
-
-  // Whether the block is undamaged, as far as `budget` allows, a number of bytes that is reduced by
-  // the inflated size.
-  bool isSound(std::span<const uint8_t> block, double& budget) {
-    inflateReset(&stream_);
-    stream_.next_in = const_cast<uint8_t*>(block.data());
-    stream_.avail_in = uInt(block.size());
-    int state = Z_OK;
-    while (state == Z_OK && budget > 0) {
-      stream_.next_out = inflated_.data();
-      stream_.avail_out = uInt(inflated_.size());
-      state = inflate(&stream_, Z_NO_FLUSH);
-      budget -= double(inflated_.size() - stream_.avail_out);
-    }
-    return state != Z_DATA_ERROR && state != Z_NEED_DICT;
-  }
-
- private:
-  z_stream stream_{};
-  std::array<uint8_t, 1 << 15> inflated_;
-};
-
-}  // namespace
 
 void checkDeflate(std::span<const uint8_t> file) {
   const TiffBlock tiff(file);

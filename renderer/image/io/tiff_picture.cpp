@@ -166,6 +166,16 @@ void checkSizes(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
                     tileLength, tileDepth, width, height));
 }
 
+constexpr uint16_t kTransferFunction = 301, kWhitePoint = 318, kPrimaryChromaticities = 319;
+
+std::vector<double> chromaticitiesIn(const TiffBlock& tiff, uint16_t tag, size_t count) {
+  std::vector<double> numbers = tiff.rationals(tiff.firstDirectory(), tag);
+  if (numbers.size() != count)
+    throw std::runtime_error(
+        "its WhitePoint or PrimaryChromaticities are not two and six rational numbers");
+  return numbers;
+}
+
 }  // namespace
 
 uint64_t pictureDirectory(std::span<const uint8_t> file) {
@@ -209,20 +219,6 @@ std::vector<uint8_t> withStripsInside(std::vector<uint8_t> file) {
   if (rows.size() != 1 || height.size() != 1 || rows[0] <= height[0]) return file;
   return tiff.withInteger(directory, kRowsPerStrip, height[0]);
 }
-
-namespace {
-
-constexpr uint16_t kTransferFunction = 301, kWhitePoint = 318, kPrimaryChromaticities = 319;
-
-std::vector<double> chromaticitiesIn(const TiffBlock& tiff, uint16_t tag, size_t count) {
-  std::vector<double> numbers = tiff.rationals(tiff.firstDirectory(), tag);
-  if (numbers.size() != count)
-    throw std::runtime_error(
-        "its WhitePoint or PrimaryChromaticities are not two and six rational numbers");
-  return numbers;
-}
-
-}  // namespace
 
 std::optional<Chromaticities> tiffPrimaries(std::span<const uint8_t> file) {
   const TiffBlock tiff(file);

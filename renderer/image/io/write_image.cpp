@@ -34,27 +34,6 @@ Image repeated(const Image& grey) {
   return color;
 }
 
-}  // namespace
-
-std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform) {
-  if (color.channels < 3) return encodePng(repeated(color), transform);
-  const auto byte = [](float encoded) { return uint8_t(std::lround(255 * encoded)); };
-  const bool hasAlpha = color.channels == 4;
-  std::vector<uint8_t> bytes(size_t(color.width) * color.height * (hasAlpha ? 4 : 3));
-  forRows(color.width, color.height, [&](int y) {
-    uint8_t* to = bytes.data() + bytes.size() / size_t(color.height) * size_t(y);
-    for (int x = 0; x < color.width; ++x) {
-      const float alpha = hasAlpha ? std::clamp(color.at(x, y)[3], 0.0f, 1.0f) : 1;
-      const Rgb shown = display(transform, unassociated(color.rgb(x, y), alpha));
-      for (int c = 0; c < 3; ++c) *to++ = byte(linearToSrgb(shown[c]));
-      if (hasAlpha) *to++ = byte(alpha);
-    }
-  });
-  return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes);
-}
-
-namespace {
-
 // The formats that hold only the colour.
 Messages writeColor(const fs::path& path, const Image& color, const DisplayTransform& transform) {
   if (color.channels < 3) return writeColor(path, repeated(color), transform);
@@ -67,51 +46,6 @@ Messages writeColor(const fs::path& path, const Image& color, const DisplayTrans
     writeFile(path, encodePng(color, transform));
   return lostLight(path, color);
 }
-
-}  // namespace
-
-void checkImageName(const fs::path& path) {
-  constexpr std::array kExtensions = {".exr", ".hdr", ".pfm", ".png"};
-  if (std::find(kExtensions.begin(), kExtensions.end(), lowerExtension(path)) == kExtensions.end())
-    throwInput("{}: unknown image format; the name must end in .exr, .hdr, .pfm or .png",
-               path.string());
-}
-
-void checkWritable(const fs::path& path) {
-  checkImageName(path);
-  checkReplaceable(path);
-}
-
-Messages writeImage(const fs::path& path, const OutputImage& output,
-                    const DisplayTransform& transform) {
-  checkWritable(path);
-  if (lowerExtension(path) != ".exr")
-    return writeColor(path, output.layers.front().image, transform);
-  writeExr(path, output);
-  return {};
-}
-
-Messages writeInWindow(const fs::path& path, OutputImage output, const fs::path& source,
-                       const DisplayTransform& transform) {
-  if (output.placement && lowerExtension(path) != ".exr") {
-    Image& color = output.layers.front().image;
-    color = inDisplayWindow(std::move(color), output.placement, source);
-  }
-  return writeImage(path, output, transform);
-}
-
-Messages writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
-  checkWritable(path);
-  if (color.channels != 1 && color.channels != 3 && color.channels != 4)
-    throwInput("{}: an image of {} channels is no colour; it needs 1, 3 or 4", path.string(),
-               color.channels);
-  if (lowerExtension(path) != ".exr") return writeColor(path, color, transform);
-  const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
-  writeExr(path, OutputImage{{{"", letters, color}}, {}, {}, {}});
-  return {};
-}
-
-namespace {
 
 bool isOpaque(const Image& color) {
   for (size_t i = 3; i < color.texels.size(); i += 4)
@@ -182,25 +116,6 @@ Messages numbersLost(const std::filesystem::path& path, const Image& color, bool
   return messages;
 }
 
-}  // namespace
-
-Messages lostLight(const std::filesystem::path& path, const Image& color) {
-  const std::string kind = lowerExtension(path);
-  Messages messages;
-  if ((kind == ".hdr" || kind == ".pfm") && color.channels == 4 && !isOpaque(color))
-    messages.push_back(
-        warning("{}: holds no alpha, which is lost; an .exr or a .png does", path.string()));
-  if (kind == ".png" && color.channels == 4)
-    if (std::optional<Message> message = uncoveredLight(path, color))
-      messages.push_back(*std::move(message));
-  if (kind == ".png" || kind == ".hdr")
-    for (Message& message : numbersLost(path, color, kind == ".hdr"))
-      messages.push_back(std::move(message));
-  return messages;
-}
-
-namespace {
-
 // The data that libpng's callbacks share. libpng ends by a jump in case of an error, so these have
 // no destructors to run when it jumps.
 struct PngOutput {
@@ -239,6 +154,79 @@ bool writePngImage(png_structp png, png_infop info, int width, int height, int c
 }
 
 }  // namespace
+
+std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform) {
+  if (color.channels < 3) return encodePng(repeated(color), transform);
+  const auto byte = [](float encoded) { return uint8_t(std::lround(255 * encoded)); };
+  const bool hasAlpha = color.channels == 4;
+  std::vector<uint8_t> bytes(size_t(color.width) * color.height * (hasAlpha ? 4 : 3));
+  forRows(color.width, color.height, [&](int y) {
+    uint8_t* to = bytes.data() + bytes.size() / size_t(color.height) * size_t(y);
+    for (int x = 0; x < color.width; ++x) {
+      const float alpha = hasAlpha ? std::clamp(color.at(x, y)[3], 0.0f, 1.0f) : 1;
+      const Rgb shown = display(transform, unassociated(color.rgb(x, y), alpha));
+      for (int c = 0; c < 3; ++c) *to++ = byte(linearToSrgb(shown[c]));
+      if (hasAlpha) *to++ = byte(alpha);
+    }
+  });
+  return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes);
+}
+
+void checkImageName(const fs::path& path) {
+  constexpr std::array kExtensions = {".exr", ".hdr", ".pfm", ".png"};
+  if (std::find(kExtensions.begin(), kExtensions.end(), lowerExtension(path)) == kExtensions.end())
+    throwInput("{}: unknown image format; the name must end in .exr, .hdr, .pfm or .png",
+               path.string());
+}
+
+void checkWritable(const fs::path& path) {
+  checkImageName(path);
+  checkReplaceable(path);
+}
+
+Messages writeImage(const fs::path& path, const OutputImage& output,
+                    const DisplayTransform& transform) {
+  checkWritable(path);
+  if (lowerExtension(path) != ".exr")
+    return writeColor(path, output.layers.front().image, transform);
+  writeExr(path, output);
+  return {};
+}
+
+Messages writeInWindow(const fs::path& path, OutputImage output, const fs::path& source,
+                       const DisplayTransform& transform) {
+  if (output.placement && lowerExtension(path) != ".exr") {
+    Image& color = output.layers.front().image;
+    color = inDisplayWindow(std::move(color), output.placement, source);
+  }
+  return writeImage(path, output, transform);
+}
+
+Messages writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
+  checkWritable(path);
+  if (color.channels != 1 && color.channels != 3 && color.channels != 4)
+    throwInput("{}: an image of {} channels is no colour; it needs 1, 3 or 4", path.string(),
+               color.channels);
+  if (lowerExtension(path) != ".exr") return writeColor(path, color, transform);
+  const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
+  writeExr(path, OutputImage{{{"", letters, color}}, {}, {}, {}});
+  return {};
+}
+
+Messages lostLight(const std::filesystem::path& path, const Image& color) {
+  const std::string kind = lowerExtension(path);
+  Messages messages;
+  if ((kind == ".hdr" || kind == ".pfm") && color.channels == 4 && !isOpaque(color))
+    messages.push_back(
+        warning("{}: holds no alpha, which is lost; an .exr or a .png does", path.string()));
+  if (kind == ".png" && color.channels == 4)
+    if (std::optional<Message> message = uncoveredLight(path, color))
+      messages.push_back(*std::move(message));
+  if (kind == ".png" || kind == ".hdr")
+    for (Message& message : numbersLost(path, color, kind == ".hdr"))
+      messages.push_back(std::move(message));
+  return messages;
+}
 
 std::vector<uint8_t> encodePng(int width, int height, int channels,
                                std::span<const uint8_t> bytes) {
