@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -93,11 +92,7 @@ void checkReadable(const fs::path& path) {
   if (access(path.c_str(), R_OK) != 0) throwInput("{}: {}", name, std::strerror(errno));
 }
 
-std::string lowerExtension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
+std::string lowerExtension(const fs::path& path) { return lowerCase(path.extension().string()); }
 
 SharedFile::SharedFile(const fs::path& path) : path_(path) {
   checkReadable(path);
