@@ -9,7 +9,6 @@
 #include <cmath>
 #include <csetjmp>
 #include <cstring>
-#include <limits>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -73,46 +72,33 @@ std::optional<Message> uncoveredLight(const std::filesystem::path& path, const I
       100 * lost / light);
 }
 
-// The numbers in the colour's channels that a format cannot hold.
-struct NumbersBeyond {
-  size_t negative = 0, tooLarge = 0, infinite = 0, nan = 0, count = 0;
+// The numbers in the colour's channels that the format cannot hold. Light above white, also
+// infinite light, is not reported for a .png: it is clipped like any bright surface.
+Messages numbersLost(const fs::path& path, const Image& color, bool isHdr) {
+  const int channels = std::min(color.channels, 3);
+  size_t negative = 0, tooLarge = 0, infinite = 0, nan = 0;
   float least = 0, largest = 0;
-
-  NumbersBeyond(const Image& color, float limit) {
-    const int channels = std::min(color.channels, 3);
-    count = color.pixels() * size_t(channels);
-    for (size_t i = 0; i < color.pixels(); ++i)
-      for (int c = 0; c < channels; ++c) add(color.at(i)[c], limit);
-  }
-  double percent(size_t numbers) const { return 100. * double(numbers) / double(count); }
-
- private:
-  void add(float number, float limit) {
-    if (number < 0) ++negative, least = std::min(least, number);
-    if (number > limit) ++tooLarge, largest = std::max(largest, number);
-    if (std::isinf(number)) ++infinite;
-    if (std::isnan(number)) ++nan;
-  }
-};
-
-// Light above white, also infinite light, is not reported for a .png: it is clipped like any bright
-// surface.
-Messages numbersLost(const std::filesystem::path& path, const Image& color, bool isHdr) {
-  const NumbersBeyond beyond(color, isHdr ? kMaxRgbe : std::numeric_limits<float>::infinity());
+  for (size_t i = 0; i < color.pixels(); ++i)
+    for (int c = 0; c < channels; ++c) {
+      const float number = color.at(i)[c];
+      negative += number<0, tooLarge += number> kMaxRgbe;
+      infinite += std::isinf(number), nan += std::isnan(number);
+      least = std::min(least, number), largest = std::max(largest, number);
+    }
   Messages messages;
   const auto add = [&](size_t numbers, const std::string& what) {
     if (numbers > 0)
-      messages.push_back(warning("{}: {:.3g}% of the channels are {}; an .exr holds them",
-                                 path.string(), beyond.percent(numbers), what));
+      messages.push_back(
+          warning("{}: {:.3g}% of the channels are {}; an .exr holds them", path.string(),
+                  100. * double(numbers) / double(color.pixels() * size_t(channels)), what));
   };
-  add(beyond.negative, fmt::format("negative, down to {:.3g}, and become 0", beyond.least));
+  add(negative, fmt::format("negative, down to {:.3g}, and become 0", least));
   if (!isHdr) {
-    add(beyond.nan, "NaN, and become 0");
+    add(nan, "NaN, and become 0");
     return messages;
   }
-  add(beyond.tooLarge,
-      fmt::format("above {:.3g}, up to {:.3g}, and are cut", kMaxRgbe, beyond.largest));
-  add(beyond.nan + beyond.infinite, "NaN or infinite, and become 0");
+  add(tooLarge, fmt::format("above {:.3g}, up to {:.3g}, and are cut", kMaxRgbe, largest));
+  add(nan + infinite, "NaN or infinite, and become 0");
   return messages;
 }
 
