@@ -2,13 +2,11 @@
 // Images as separate planes with a margin, so that windows around any pixel can be read.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <memory>
-#include <vector>
 
 #include "base/parallel.h"
 #include "image/image.h"

@@ -10,7 +10,6 @@
 #include <OpenEXR/ImfRgbaFile.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <set>
 #include <string_view>

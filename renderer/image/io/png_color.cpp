@@ -11,7 +11,6 @@
 #include <cstring>
 #include <map>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "base/progress.h"

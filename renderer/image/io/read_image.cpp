@@ -2,8 +2,6 @@
 #include "image/io/read_image.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <limits>
 
 #include "base/error.h"
