@@ -6,7 +6,6 @@
 #include <span>
 
 #include "image/develop/bloom.h"
-#include "image/develop/vignette.h"
 
 namespace chromeball {
 namespace {
