@@ -237,10 +237,8 @@ std::optional<Chromaticities> tiffPrimaries(std::span<const uint8_t> file) {
 }
 
 bool statesGrey(std::span<const uint8_t> file) {
-  constexpr uint16_t kPhotometricInterpretation = 262;
   const TiffBlock tiff(file);
-  const std::vector<uint64_t> stated =
-      tiff.integers(tiff.firstDirectory(), kPhotometricInterpretation);
+  const std::vector<uint64_t> stated = tiff.integers(tiff.firstDirectory(), kPhotometric);
   constexpr uint64_t kLargestOfGrey = 1;  // 0 if 0 is white
   return !stated.empty() && stated[0] <= kLargestOfGrey;
 }
