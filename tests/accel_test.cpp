@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ray intersection: watertightness, instances compared with baked meshes, alpha, ray masks.
 #include "trace/accel.h"
+#include "hypothesis.h"
 #include "scene/bounds.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "math/vec.h"
-#include "measure/statistics.h"
 #include "scene/mesh.h"
 #include "scene/surface.h"
 #include "test_scene.h"

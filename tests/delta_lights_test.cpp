@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rendering with directional lights instead of the probe: no light is lost or counted twice.
 #include "lighting/delta_lights.h"
+#include "hypothesis.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,6 @@
 #include "base/error.h"
 #include "lighting/fit/irradiance_fit.h"
 #include "lighting/methods.h"
-#include "measure/statistics.h"
 #include "probe/irradiance.h"
 #include "probe/mapping.h"
 #include "probe/synth.h"

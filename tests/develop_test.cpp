@@ -9,7 +9,7 @@
 
 #include "base/parallel.h"
 #include "image/develop/bloom.h"
-#include "image/develop/vignette.h"
+#include "image/develop/lens.h"
 
 namespace chromeball::develop_test {
 namespace {

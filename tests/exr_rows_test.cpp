@@ -55,7 +55,7 @@ TEST(ExrRows, BandsOfAnyHeightAreTheWhole) {
         EXPECT_EQ(findLayer(whole, "a")->texels, other.texels);
         ExrRowsReader reader(folder / "a.exr", kNoLimit);
         EXPECT_EQ(reader.channels(), whole.channels);
-        EXPECT_EQ(std::get<std::string>(reader.metadata().at("name")), "rows");
+        EXPECT_EQ(std::get<std::string>(reader.contents().metadata.at("name")), "rows");
         for (int top = 0; top < 37; top += height) {
           const int count = std::min(height, 37 - top);
           ASSERT_EQ(reader.read(top, count).texels, rowsOf(whole.image, top, count).texels);

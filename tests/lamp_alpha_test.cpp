@@ -5,7 +5,7 @@
 #include "composite/compose.h"
 #include "composite/layers.h"
 #include "composite/render_composite.h"
-#include "measure/statistics.h"
+#include "hypothesis.h"
 #include "probe/synth.h"
 #include "test_scene.h"
 

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "hypothesis.h"
 #include "math/vec.h"
-#include "measure/statistics.h"
 #include "probe/irradiance.h"
 #include "probe/synth.h"
 #include "relight/stage/direction_basis.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders with known exact results, and independence of the number of threads.
 #include "render/render.h"
+#include "hypothesis.h"
 
 #include <gtest/gtest.h>
 
 #include "all_tables.h"
 #include "base/parallel.h"
 #include "lighting/strategy.h"
-#include "measure/statistics.h"
 #include "probe/mapping.h"
 #include "probe/synth.h"
 #include "test_scene.h"

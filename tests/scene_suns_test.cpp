@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Suns that a scene has besides its probe: [[light]] without a type, or of type sun.
+#include "hypothesis.h"
 #include "lighting/scene_sources.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,6 @@
 #include "front/plan_render.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
-#include "measure/statistics.h"
 #include "probe/synth.h"
 #include "run_command.h"
 #include "session/render_loaded.h"

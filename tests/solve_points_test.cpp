@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras found from points of known positions.
+#include "hypothesis.h"
 #include "scene/solve/solve_camera.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,6 @@
 
 #include "base/error.h"
 #include "math/rotation.h"
-#include "measure/statistics.h"
 #include "photographs_of_points.h"
 #include "scene/solve/solved_camera.h"
 

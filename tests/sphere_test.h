@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "hypothesis.h"
 #include "math/warp.h"
-#include "measure/statistics.h"
 
 namespace chromeball {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "floor_in_surroundings.h"
+#include "hypothesis.h"
 #include "probe/synth.h"
 
 namespace chromeball::surroundings_test {

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -37,19 +35,48 @@ void refuseNul(const fs::path& path) {
     throwInput("{}: the file name contains U+0000", path.string());
 }
 
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  operator int() const { return number_; }
+uint64_t hashOfText(std::string_view text) {
+  uint64_t sum = 0;
+  for (const char letter : text) sum = hash(sum ^ static_cast<unsigned char>(letter));
+  return sum;
+}
 
- private:
-  const int number_;
-};
+// A few letters.
+std::string machineName() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return fmt::format("{:08x}", uint32_t(hashOfText({name.data(), name.size()})));
+}
+
+// Whether the path still names a file that was opened: the process that held its lock may have
+// renamed or removed it meanwhile.
+bool isStillNamed(int file, const fs::path& path) {
+  struct stat opened {
+  }, named{};
+  return fstat(file, &opened) == 0 && stat(path.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+// Creates or empties a file that no other process has locked; -1 if that is not possible.
+int openLocked(const fs::path& path) {
+  const int file = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (file < 0) return -1;
+  if (flock(file, LOCK_EX | LOCK_NB) == 0 && isStillNamed(file, path) && ftruncate(file, 0) == 0)
+    return file;
+  close(file);
+  return -1;
+}
+
+// The file's part of a temporary name: all of its name, or the beginning of a long one and a hash,
+// so that a temporary file is possible wherever the file is.
+std::string stemOf(const fs::path& file) {
+  constexpr size_t kRest = 64;  // for the hash, the machine, the process and what is between them
+  const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  const size_t longest = size_t(std::max(pathconf(folder.c_str(), _PC_NAME_MAX), long(kRest)));
+  const std::string name = file.filename().string();
+  if (name.size() + kRest <= longest) return name;
+  return fmt::format("{}{:016x}", name.substr(0, longest - kRest), hashOfText(name));
+}
 
 }  // namespace
 
@@ -65,39 +92,43 @@ void checkReadable(const fs::path& path) {
   if (access(path.c_str(), R_OK) != 0) throwInput("{}: {}", name, std::strerror(errno));
 }
 
-std::string lowerExtension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+std::string lowerExtension(const fs::path& path) { return lowerCase(path.extension().string()); }
+
+SharedFile::SharedFile(const fs::path& path) : path_(path) {
+  checkReadable(path);
+  descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor_ < 0) throwInput("{}: cannot be read", path.string());
+}
+
+SharedFile::~SharedFile() { close(descriptor_); }
+
+void SharedFile::read(uint64_t at, void* to, size_t count) const {
+  for (size_t done = 0; done < count;) {
+    const ssize_t more =
+        pread(descriptor_, static_cast<char*>(to) + done, count - done, off_t(at + done));
+    if (more > 0) done += size_t(more);
+    if (more == 0 || (more < 0 && errno != EINTR))
+      throwInput("{}: cannot read the whole file", path_.string());
+  }
 }
 
 std::vector<uint8_t> readFile(const fs::path& path) {
-  checkReadable(path);
+  const SharedFile file(path);
   std::vector<uint8_t> bytes = longArray<uint8_t>(fs::file_size(path));
-  std::ifstream in(path, std::ios::binary);
-  forParts(bytes.size(), kReadAtOnce, [&](size_t begin, size_t end) {
-    if (!in.read(reinterpret_cast<char*>(bytes.data() + begin), std::streamsize(end - begin)))
-      throwInput("{}: cannot read the whole file", path.string());
-  });
+  forParts(bytes.size(), kReadAtOnce,
+           [&](size_t begin, size_t end) { file.read(begin, bytes.data() + begin, end - begin); });
   return bytes;
 }
 
 FileBytes::FileBytes(const fs::path& path) {
-  checkReadable(path);
+  const SharedFile file(path);
   size_ = size_t(fs::file_size(path));
   data_.reset(new uint8_t[size_]);
   useLargePages(data_.get(), size_);
-  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  std::atomic<bool> isWhole = file >= 0;
   parallelFor(size_t(0), (size_ + kReadAtOnce - 1) / kReadAtOnce, [&](size_t block) {
-    const size_t end = std::min(size_, (block + 1) * kReadAtOnce);
-    for (size_t at = block * kReadAtOnce; at < end && isWhole;) {
-      const ssize_t count = pread(file, data_.get() + at, end - at, off_t(at));
-      if (count > 0) at += size_t(count);
-      if (count == 0 || (count < 0 && errno != EINTR)) isWhole = false;
-    }
+    const size_t begin = block * kReadAtOnce;
+    file.read(begin, data_.get() + begin, std::min(kReadAtOnce, size_ - begin));
   });
-  if (!isWhole) throwInput("{}: cannot read the whole file", path.string());
 }
 
 void checkReplaceable(const fs::path& link) {
@@ -137,51 +168,6 @@ uint64_t fingerprint(const std::string& path) {
   return state;
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-
-uint64_t hashOfText(std::string_view text) {
-  uint64_t sum = 0;
-  for (const char letter : text) sum = hash(sum ^ static_cast<unsigned char>(letter));
-  return sum;
-}
-
-// A few letters.
-std::string machineName() {
-  std::array<char, 256> name{};
-  gethostname(name.data(), name.size() - 1);
-  return fmt::format("{:08x}", uint32_t(hashOfText({name.data(), name.size()})));
-}
-
-// Creates or empties a file that no other process has locked; -1 if that is not possible.
-int openLocked(const fs::path& path) {
-  const int file = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (file < 0) return -1;
-  // The process that held the lock may have renamed the file after it was opened here.
-  struct stat locked {
-  }, named{};
-  if (flock(file, LOCK_EX | LOCK_NB) == 0 && fstat(file, &locked) == 0 &&
-      stat(path.c_str(), &named) == 0 && locked.st_ino == named.st_ino &&
-      locked.st_dev == named.st_dev && ftruncate(file, 0) == 0)
-    return file;
-  close(file);
-  return -1;
-}
-
-// The file's part of a temporary name: all of its name, or the beginning of a long one and a hash,
-// so that a temporary file is possible wherever the file is.
-std::string stemOf(const fs::path& file) {
-  constexpr size_t kRest = 64;  // for the hash, the machine, the process and what is between them
-  const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
-  const size_t longest = size_t(std::max(pathconf(folder.c_str(), _PC_NAME_MAX), long(kRest)));
-  const std::string name = file.filename().string();
-  if (name.size() + kRest <= longest) return name;
-  return fmt::format("{}{:016x}", name.substr(0, longest - kRest), hashOfText(name));
-}
-
-}  // namespace
-
 fs::path replaceableFile(const fs::path& path) {
   constexpr int kMostLinks = 40;  // as Linux follows
   fs::path file = path;
@@ -199,8 +185,7 @@ fs::path replaceableFile(const fs::path& path) {
                                                                                   : nullptr;
   if (what)
     throwInput(
-        "{}: cannot be written: it is a {}; an output is a file that appears when it is "
-        "complete",
+        "{}: cannot be written: it is a {}; an output is a file that appears when it is complete",
         path.string(), what);
   return file;
 }
@@ -237,12 +222,8 @@ FileLock::FileLock(const std::filesystem::path& file) : path_(nameOf(file)) {
       close(descriptor_);
       throwInput("{}: is used by another process that is still rendering", file.string());
     }
-    // The process that held the lock may have removed the file after it was opened here.
-    struct stat locked {
-    }, named{};
-    if (fstat(descriptor_, &locked) == 0 && stat(path_.c_str(), &named) == 0 &&
-        locked.st_ino == named.st_ino && locked.st_dev == named.st_dev) {
-      if (locked.st_size == 0) return;
+    if (isStillNamed(descriptor_, path_)) {
+      if (lseek(descriptor_, 0, SEEK_END) == 0) return;
       close(descriptor_);
       throwInput("{}: has contents, and would be removed as a lock; rename it", path_.string());
     }

@@ -17,6 +17,22 @@ void checkReadable(const std::filesystem::path& path);
 // ".exr" of "A.EXR": a file's extension in lower case; empty if it has none.
 std::string lowerExtension(const std::filesystem::path& path);
 
+// A readable regular file, which several threads may read at once. Functions throw InputError.
+class SharedFile {
+ public:
+  explicit SharedFile(const std::filesystem::path& path);
+  ~SharedFile();
+  SharedFile(const SharedFile&) = delete;
+  SharedFile& operator=(const SharedFile&) = delete;
+
+  std::string name() const { return path_.string(); }
+  void read(uint64_t at, void* to, size_t count) const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+};
+
 // All bytes of a regular file. Throws InputError.
 std::vector<uint8_t> readFile(const std::filesystem::path& path);
 

@@ -22,6 +22,8 @@ std::string printableName(std::string_view name);
 // "a, b, c, d, e, f and 994 more": the first names of a list, each as by printableName().
 std::string firstNames(const std::vector<std::string>& names);
 
+std::string lowerCase(std::string_view text);  // ASCII letters
+
 // "Did you mean ...?": suggests the known name nearest to an unknown one.
 
 // Minimum number of single-character edits that turn `a` into `b`: insert, delete, replace, or swap

@@ -28,13 +28,12 @@ float normalization(std::span<const HalvedImage> images) {
 }
 
 Plane squares(const Plane& plane) {
-  return makePlane(plane.width(), plane.height(),
-                   [&](int x, int y) { return plane.at(x, y) * plane.at(x, y); });
+  return makePlaneLike(plane, [&](int x, int y) { return plane.at(x, y) * plane.at(x, y); });
 }
 
 // The variance of the mean of two halves.
 Plane varianceOf(const Plane& a, const Plane& b) {
-  const Plane squared = makePlane(a.width(), a.height(), [&](int x, int y) {
+  const Plane squared = makePlaneLike(a, [&](int x, int y) {
     const float half = (a.at(x, y) - b.at(x, y)) / 2;
     return half * half;
   });
@@ -56,9 +55,8 @@ HalfPlanes halvesOf(const HalvedImage& image, float scale) {
 
 Component componentOf(HalfPlanes halves) {
   Component component{std::move(halves), {}};
-  for (size_t c = 0; c < 3; ++c) {
+  for (size_t c = 0; c < 3; ++c)
     component.variance[c] = varianceOf(component.halves[0][c], component.halves[1][c]);
-  }
   return component;
 }
 
@@ -72,12 +70,10 @@ HalfGuides guidesOf(const HalvedImage& image, float scale) {
     const Plane noise = boxMean(squares(half), kHalvesReach);
     for (int i = 0; i < 2; ++i) {
       const float sign = i == 0 ? 1 : -1;
-      halves[size_t(i)].values.push_back(makePlane(mean.width(), mean.height(), [&](int x, int y) {
-        return scale * (mean.at(x, y) + sign * half.at(x, y));
-      }));
+      halves[size_t(i)].values.push_back(makePlaneLike(
+          mean, [&](int x, int y) { return scale * (mean.at(x, y) + sign * half.at(x, y)); }));
       halves[size_t(i)].variances.push_back(
-          makePlane(mean.width(), mean.height(),
-                    [&](int x, int y) { return 2 * scale * scale * noise.at(x, y); }));
+          makePlaneLike(mean, [&](int x, int y) { return 2 * scale * scale * noise.at(x, y); }));
     }
   }
   return halves;
@@ -94,10 +90,10 @@ FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& sto
     const HalfChannels halves = averageHalves(guidesOf(*image, scale), stop);
     for (size_t c = 0; c < halves[0].size(); ++c, ++at) {
       const Plane &a = halves[0][c], &b = halves[1][c];
-      const Plane values = makePlane(a.width(), a.height(),
-                                     [&](int x, int y) { return (a.at(x, y) + b.at(x, y)) / 2; });
+      const Plane values =
+          makePlaneLike(a, [&](int x, int y) { return (a.at(x, y) + b.at(x, y)) / 2; });
       const Plane noise = varianceOf(a, b);
-      features.ridges[at] = makePlane(a.width(), a.height(), [&](int x, int y) {
+      features.ridges[at] = makePlaneLike(a, [&](int x, int y) {
         const float size = kInsignificant * (isRelative ? values.at(x, y) : 1);
         return size * size + noise.at(x, y) + 1e-12f;
       });
@@ -115,13 +111,12 @@ HalfGuides guidesOf(const HalfPlanes& filtered, const Component& component) {
   HalfGuides guides;
   for (size_t c = 0; c < 3; ++c) {
     const Plane &a = filtered[0][c], &b = filtered[1][c];
-    const Plane between = boxMean(makePlane(a.width(), a.height(),
-                                            [&](int x, int y) {
-                                              const float difference = a.at(x, y) - b.at(x, y);
-                                              return difference * difference / 2;
-                                            }),
-                                  kReach);
-    const Plane variance = makePlane(a.width(), a.height(), [&](int x, int y) {
+    const Plane squared = makePlaneLike(a, [&](int x, int y) {
+      const float difference = a.at(x, y) - b.at(x, y);
+      return difference * difference / 2;
+    });
+    const Plane between = boxMean(squared, kReach);
+    const Plane variance = makePlaneLike(a, [&](int x, int y) {
       return between.at(x, y) + kRemaining * component.variance[c].at(x, y);
     });
     for (size_t half = 0; half < 2; ++half) {
@@ -138,8 +133,7 @@ RgbPlanes noiseOf(const HalvedImage& image, float scale) {
   for (int c = 0; c < 3; ++c) {
     const Plane mean = planeOf(image.mean, c), half = planeOf(image.half, c);
     const auto scaled = [&](const Plane& plane) {
-      return makePlane(plane.width(), plane.height(),
-                       [&](int x, int y) { return scale * plane.at(x, y); });
+      return makePlaneLike(plane, [&](int x, int y) { return scale * plane.at(x, y); });
     };
     noise[size_t(c)] = averageErrors(squares(scaled(half)), scaled(mean), kNoiseReach);
   }
@@ -207,19 +201,18 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
 Denoised sumOf(const std::vector<DenoisedPart>& parts) {
   const int width = parts.front().color.width, height = parts.front().color.height;
   Denoised sum{Image(width, height, 3), Image(width, height, 1)};
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      Rgb color(0);
-      glm::dvec3 squaredError(0);  // beyond the range of a float for bright and dim images
-      for (const DenoisedPart& part : parts) {
-        color += part.color.rgb(x, y);
-        const glm::dvec3 error(part.standardError.rgb(x, y));
-        squaredError += error * error;
-      }
-      // A regression may predict less than nothing.
-      sum.color.setRgb(x, y, glm::max(color, Rgb(0)));
-      *sum.error.at(x, y) = float(luminance(glm::sqrt(squaredError)));
+  for (size_t i = 0; i < sum.color.pixels(); ++i) {
+    Rgb color(0);
+    glm::dvec3 squaredError(0);  // beyond the range of a float for bright and dim images
+    for (const DenoisedPart& part : parts) {
+      color += part.color.rgb(i);
+      const glm::dvec3 error(part.standardError.rgb(i));
+      squaredError += error * error;
     }
+    // A regression may predict less than nothing.
+    sum.color.setRgb(i, glm::max(color, Rgb(0)));
+    sum.error.texels[i] = float(luminance(glm::sqrt(squaredError)));
+  }
   return sum;
 }
 
@@ -233,18 +226,15 @@ double remainingNoise(const Denoised& denoised) {
   const Image& error = denoised.error;
   double mean = 0, sum = 0;
   const double count = double(error.texels.size());
-  for (int y = 0; y < color.height; ++y)
-    for (int x = 0; x < color.width; ++x) mean += double(luminance(color.rgb(x, y))) / count;
+  for (size_t i = 0; i < color.pixels(); ++i) mean += double(luminance(color.rgb(i))) / count;
   if (!(mean > 0)) return std::numeric_limits<double>::quiet_NaN();
-  for (int y = 0; y < color.height; ++y)
-    for (int x = 0; x < color.width; ++x) {
-      // As far as is known here, a pixel is as bright as its error if that exceeds its luminance.
-      const double absolute = double(*error.at(x, y));
-      const double reference =
-          std::max({double(luminance(color.rgb(x, y))), absolute, 0.01 * mean});
-      const double relative = absolute / reference;
-      sum += relative * relative / count;
-    }
+  for (size_t i = 0; i < color.pixels(); ++i) {
+    // As far as is known here, a pixel is as bright as its error if that exceeds its luminance.
+    const double absolute = double(error.texels[i]);
+    const double reference = std::max({double(luminance(color.rgb(i))), absolute, 0.01 * mean});
+    const double relative = absolute / reference;
+    sum += relative * relative / count;
+  }
   return std::sqrt(sum);
 }
 

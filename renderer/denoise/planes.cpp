@@ -27,12 +27,12 @@ Plane planeOf(const Image& image, int channel) {
 
 Plane boxMean(const Plane& plane, int reach) {
   const float scale = 1 / float(2 * reach + 1);
-  const Plane rows = makePlane(plane.width(), plane.height(), [&](int x, int y) {
+  const Plane rows = makePlaneLike(plane, [&](int x, int y) {
     float sum = 0;
     for (int i = -reach; i <= reach; ++i) sum += plane.at(x + i, y);
     return sum * scale;
   });
-  return makePlane(plane.width(), plane.height(), [&](int x, int y) {
+  return makePlaneLike(plane, [&](int x, int y) {
     float sum = 0;
     for (int i = -reach; i <= reach; ++i) sum += rows.at(x, y + i);
     return sum * scale;

@@ -2,13 +2,11 @@
 // Images as separate planes with a margin, so that windows around any pixel can be read.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <memory>
-#include <vector>
 
 #include "base/parallel.h"
 #include "image/image.h"
@@ -58,6 +56,12 @@ Plane makePlane(int width, int height, const Value& value) {
   });
   plane.extend();
   return plane;
+}
+
+// The same, of the size of another plane.
+template <class Value>
+Plane makePlaneLike(const Plane& like, const Value& value) {
+  return makePlane(like.width(), like.height(), value);
 }
 
 Plane planeOf(const Image& image, int channel);

@@ -34,11 +34,6 @@ float marginOf(FilterKind filter) {
 
 float square(float x) { return x * x; }
 
-template <class Value>
-Plane makePlaneLike(const Plane& like, const Value& value) {
-  return makePlane(like.width(), like.height(), value);
-}
-
 Plane meanOf(const Plane& a, const Plane& b) {
   return makePlaneLike(a, [&](int x, int y) { return (a.at(x, y) + b.at(x, y)) / 2; });
 }

@@ -15,6 +15,8 @@ namespace {
 
 constexpr float kNoDepth = 1e10f;
 
+bool isIndex(Aov aov) { return aov == Aov::Material || aov == Aov::Node; }
+
 // Gives 1 for a zero vector.
 double lengthOf(const double* v) {
   const double length = std::hypot(v[0], v[1], v[2]);
@@ -24,19 +26,21 @@ double lengthOf(const double* v) {
 }  // namespace
 
 const std::vector<AovInfo>& allAovs() {
-  static const std::vector<AovInfo> infos{{Aov::Albedo, "albedo", "RGB"},
-                                          {Aov::Normal, "normal", "XYZ"},
-                                          {Aov::Depth, "depth", "Z"},
-                                          {Aov::Alpha, "alpha", "A"},
-                                          {Aov::Variance, "variance", "RGB"},
-                                          {Aov::Samples, "samples", ""},
-                                          {Aov::Material, "material", ""},
-                                          {Aov::Node, "node", ""},
-                                          {Aov::Invalid, "invalid", "RGB"},
-                                          {Aov::Denoise, "denoise", ""},
-                                          {Aov::AmbientOcclusion, "ao", ""},
-                                          {Aov::BentNormal, "bent_normal", "XYZ"},
-                                          {Aov::Irradiance, "irradiance", "RGB"}};
+  using Hit = const FirstHit&;
+  static const std::vector<AovInfo> infos{
+      {Aov::Albedo, "albedo", "RGB", [](Hit hit) { return hit.albedo; }},
+      {Aov::Normal, "normal", "XYZ", [](Hit hit) { return hit.normal; }},
+      {Aov::Depth, "depth", "Z", [](Hit hit) { return vec3(hit.depth); }},
+      {Aov::Alpha, "alpha", "A", [](Hit) { return vec3(1); }},
+      {Aov::Variance, "variance", "RGB"},
+      {Aov::Samples, "samples", ""},
+      {Aov::Material, "material", ""},
+      {Aov::Node, "node", ""},
+      {Aov::Invalid, "invalid", "RGB"},
+      {Aov::Denoise, "denoise", ""},
+      {Aov::AmbientOcclusion, "ao", "", [](Hit hit) { return vec3(hit.ambientOcclusion); }},
+      {Aov::BentNormal, "bent_normal", "XYZ", [](Hit hit) { return hit.unoccluded; }},
+      {Aov::Irradiance, "irradiance", "RGB", [](Hit hit) { return hit.irradiance; }}};
   return infos;
 }
 
@@ -69,41 +73,13 @@ void AovFilm::add(int x, int y, const FirstHit& first) {
   ++samples_[index];
   if (!first.hit) return;
   const bool isFirst = hits_[index]++ == 0;
-  const auto addRgb = [](double* to, const vec3& v) {
-    for (int c = 0; c < 3; ++c) to[c] += v[c];
-  };
   for (Sum& sum : sums_) {
     double* to = &sum.sums[index * sum.channels];
-    switch (sum.aov) {
-      case Aov::Albedo:
-        addRgb(to, first.albedo);
-        break;
-      case Aov::Normal:
-        addRgb(to, first.normal);
-        break;
-      case Aov::Depth:
-        *to += first.depth;
-        break;
-      case Aov::Material:
-        if (isFirst) *to = first.material + 1;
-        break;
-      case Aov::Node:
-        if (isFirst) *to = first.node + 1;
-        break;
-      case Aov::Alpha:
-        *to += 1;
-        break;
-      case Aov::AmbientOcclusion:
-        *to += first.ambientOcclusion;
-        break;
-      case Aov::BentNormal:
-        addRgb(to, first.unoccluded);
-        break;
-      case Aov::Irradiance:
-        addRgb(to, first.irradiance);
-        break;
-      default:
-        break;  // Variance, Samples and Invalid do not depend on the first hit
+    if (const auto summed = aovInfo(sum.aov).summed) {
+      const vec3 value = summed(first);
+      for (int c = 0; c < sum.channels; ++c) to[c] += value[c];
+    } else if (isFirst && isIndex(sum.aov)) {
+      *to = (sum.aov == Aov::Material ? first.material : first.node) + 1;
     }
   }
 }
@@ -119,8 +95,7 @@ void AovFilm::add(const AovFilm& part, int left, int top) {
       const size_t from = part.pixel(x, y), to = pixel(left + x, top + y);
       for (size_t i = 0; i < sums_.size(); ++i) {
         Sum& sum = sums_[i];
-        const bool isIndex = sum.aov == Aov::Material || sum.aov == Aov::Node;
-        if (isIndex && hits_[to] > 0) continue;
+        if (isIndex(sum.aov) && hits_[to] > 0) continue;
         for (int c = 0; c < sum.channels; ++c)
           sum.sums[to * sum.channels + c] += part.sums_[i].sums[from * sum.channels + c];
       }

@@ -68,6 +68,8 @@ struct AovInfo {
   Aov aov;
   const char* name;
   const char* channels;  // one letter each; empty: one channel that has the layer's name
+  // What is summed over the hits, in as many channels; null: nothing (an index, or the Film's).
+  vec3 (*summed)(const FirstHit&) = nullptr;
 };
 const std::vector<AovInfo>& allAovs();
 const AovInfo& aovInfo(Aov aov);

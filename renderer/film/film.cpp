@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film/film.h"
 
-#include <algorithm>
 #include <cassert>
 #include <limits>
 
@@ -21,6 +20,10 @@ glm::dvec4 squaredDeviations(const glm::dvec4& sumOfSquares, const glm::dvec3& s
   for (int c = 0; c < 4; ++c)
     if (deviations[c] <= rounding[c]) deviations[c] = 0;
   return deviations * (count / (count - 1));
+}
+
+void subtract(Image& a, const Image& b) {
+  for (size_t i = 0; i < a.texels.size(); ++i) a.texels[i] -= b.texels[i];
 }
 
 }  // namespace
@@ -110,21 +113,19 @@ glm::dvec4 Film::scatter(size_t pixel) const {
 
 Image Film::mean() const {
   Image image(width_, height_, 3);
-  forRows(width_, height_, [&](int y) {
-    for (int x = 0; x < width_; ++x)
-      image.setRgb(x, y, Rgb(pixels_[size_t(y) * size_t(width_) + size_t(x)].mean()));
+  forRanges(pixels_.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) image.setRgb(i, Rgb(pixels_[i].mean()));
   });
   return image;
 }
 
 Image Film::halfDifference() const {
   Image image(width_, height_, 3);
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      const Pixel& p = pixels_[size_t(y) * size_t(width_) + size_t(x)];
-      if (p.counts[0] > 0 && p.counts[1] > 0)
-        image.setRgb(x, y, Rgb((p.sums[0] / p.weights[0] - p.sums[1] / p.weights[1]) / 2.0));
-    }
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& p = pixels_[i];
+    if (p.counts[0] > 0 && p.counts[1] > 0)
+      image.setRgb(i, Rgb((p.sums[0] / p.weights[0] - p.sums[1] / p.weights[1]) / 2.0));
+  }
   return image;
 }
 
@@ -156,14 +157,6 @@ PixelErrors Film::errors() const {
   });
   return errors;
 }
-
-namespace {
-
-void subtract(Image& a, const Image& b) {
-  for (size_t i = 0; i < a.texels.size(); ++i) a.texels[i] -= b.texels[i];
-}
-
-}  // namespace
 
 HalvedImage operator-(HalvedImage a, const HalvedImage& b) {
   subtract(a.mean, b.mean);

@@ -22,8 +22,7 @@ void LayerFilm::add(int x, int y, int half, std::span<const Rgb> sample) {
   ++counts_[to];
   for (size_t i = 0; i < layers_.size(); ++i) {
     glm::dvec3& value = values_[to * layers_.size() + i];
-    const glm::dvec3 found(sample[i]);
-    value = layers_[i] == Accumulation::Sum ? value + found : glm::max(value, found);
+    value = joined(i, value, glm::dvec3(sample[i]));
   }
 }
 
@@ -46,8 +45,7 @@ void LayerFilm::add(const LayerFilm& part, int left, int top) {
         counts_[to] += part.counts_[from];
         for (size_t i = 0; i < layers_.size(); ++i) {
           glm::dvec3& value = values_[to * layers_.size() + i];
-          const glm::dvec3& other = part.values_[from * layers_.size() + i];
-          value = layers_[i] == Accumulation::Sum ? value + other : glm::max(value, other);
+          value = joined(i, value, part.values_[from * layers_.size() + i]);
         }
       }
 }
@@ -80,8 +78,7 @@ uint32_t LayerFilm::count(int x, int y) const {
 glm::dvec3 LayerFilm::value(int x, int y, int layer) const {
   const glm::dvec3& first = sum(x, y, 0, layer);
   if (halves_ == 1) return first;
-  const glm::dvec3& second = sum(x, y, 1, layer);
-  return layers_[size_t(layer)] == Accumulation::Sum ? first + second : glm::max(first, second);
+  return joined(size_t(layer), first, sum(x, y, 1, layer));
 }
 
 HalvedImage LayerFilm::mean(int layer) const {

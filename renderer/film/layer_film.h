@@ -53,6 +53,9 @@ class LayerFilm {
   size_t at(int x, int y, int half) const {
     return (size_t(y) * size_t(width_) + size_t(x)) * size_t(halves_) + size_t(half);
   }
+  glm::dvec3 joined(size_t layer, const glm::dvec3& a, const glm::dvec3& b) const {
+    return layers_[layer] == Accumulation::Sum ? a + b : glm::max(a, b);
+  }
   const glm::dvec3& sum(int x, int y, int half, int layer) const {
     return values_[at(x, y, half) * layers_.size() + size_t(layer)];
   }

@@ -98,6 +98,47 @@ glm::dvec4 squaredStandardError(const PixelErrors& e, const std::vector<double>&
   return squared;
 }
 
+constexpr int kAllocationReach = 2;  // windows are 5 x 5 pixels, without the one in the middle
+constexpr float kMaxRate = 64;       // keeps the work of a tile bounded
+constexpr double kMaxCount = 4e9;    // of a pixel
+constexpr uint64_t kPixelsPerMeter = 256;  // one of so many measures the exposure
+
+// Gaussian with a standard deviation of one pixel.
+double windowWeight(int dx, int dy) {
+  constexpr double kWeights[kAllocationReach + 1] = {1, 0.606531, 0.135335};
+  return kWeights[std::abs(dx)] * kWeights[std::abs(dy)];
+}
+
+template <class Visit>
+void forNeighbors(const PixelErrors& image, int x, int y, const Visit& visit) {
+  forWindow(image.width, image.height, x, y, kAllocationReach, [&](size_t j, int dx, int dy) {
+    if (dx != 0 || dy != 0) visit(j, dx, dy);
+  });
+}
+
+// A metering pixel always takes the mean number of samples. It may therefore influence all others.
+bool isMeter(size_t pixel) { return hash(pixel, 0x6d65746572) % kPixelsPerMeter == 0; }
+
+double exposure(const std::vector<double>& luminances) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < luminances.size(); ++i)
+    if (isMeter(i)) sum += luminances[i], ++count;
+  return count > 0 ? sum / count : 0;
+}
+
+// Relative variances of the pixels, as `noise` defines them (film/noise.h); 0 where unknown. Images
+// to be subtracted have negative luminances.
+std::vector<double> relativeVariances(const PixelErrors& pilot) {
+  const double minLuminance = 0.01 * std::fabs(exposure(pilot.luminances));
+  std::vector<double> relative(pilot.luminances.size(), 0.0);
+  for (size_t i = 0; i < relative.size(); ++i) {
+    const double reference = std::max(std::fabs(pilot.luminances[i]), minLuminance);
+    const double squared = pilot.scatter[i].w / (reference * reference);
+    if (std::isfinite(squared)) relative[i] = squared;
+  }
+  return relative;
+}
+
 }  // namespace
 
 void PixelErrors::add(const PixelErrors& other) {
@@ -125,10 +166,7 @@ std::vector<glm::dvec4> squaredStandardErrors(const PixelErrors& e) {
 
 Image varianceImage(const std::vector<glm::dvec4>& squaredErrors, int width, int height) {
   Image image(width, height, 3);
-  forRows(width, height, [&](int y) {
-    for (int x = 0; x < width; ++x)
-      image.setRgb(x, y, Rgb(squaredErrors[size_t(y) * size_t(width) + size_t(x)]));
-  });
+  for (size_t i = 0; i < squaredErrors.size(); ++i) image.setRgb(i, Rgb(squaredErrors[i]));
   return image;
 }
 
@@ -174,51 +212,6 @@ NoiseQuantiles noiseQuantiles(const PixelErrors& errors,
   };
   return {quantile(0.5), quantile(0.95)};
 }
-
-namespace {
-
-constexpr int kAllocationReach = 2;  // windows are 5 x 5 pixels, without the one in the middle
-constexpr float kMaxRate = 64;       // keeps the work of a tile bounded
-constexpr double kMaxCount = 4e9;    // of a pixel
-constexpr uint64_t kPixelsPerMeter = 256;  // one of so many measures the exposure
-
-// Gaussian with a standard deviation of one pixel.
-double windowWeight(int dx, int dy) {
-  constexpr double kWeights[kAllocationReach + 1] = {1, 0.606531, 0.135335};
-  return kWeights[std::abs(dx)] * kWeights[std::abs(dy)];
-}
-
-template <class Visit>
-void forNeighbors(const PixelErrors& image, int x, int y, const Visit& visit) {
-  forWindow(image.width, image.height, x, y, kAllocationReach, [&](size_t j, int dx, int dy) {
-    if (dx != 0 || dy != 0) visit(j, dx, dy);
-  });
-}
-
-// A metering pixel always takes the mean number of samples. It may therefore influence all others.
-bool isMeter(size_t pixel) { return hash(pixel, 0x6d65746572) % kPixelsPerMeter == 0; }
-
-double exposure(const std::vector<double>& luminances) {
-  double sum = 0, count = 0;
-  for (size_t i = 0; i < luminances.size(); ++i)
-    if (isMeter(i)) sum += luminances[i], ++count;
-  return count > 0 ? sum / count : 0;
-}
-
-// Relative variances of the pixels, as `noise` defines them (film/noise.h); 0 where unknown. Images
-// to be subtracted have negative luminances.
-std::vector<double> relativeVariances(const PixelErrors& pilot) {
-  const double minLuminance = 0.01 * std::fabs(exposure(pilot.luminances));
-  std::vector<double> relative(pilot.luminances.size(), 0.0);
-  for (size_t i = 0; i < relative.size(); ++i) {
-    const double reference = std::max(std::fabs(pilot.luminances[i]), minLuminance);
-    const double squared = pilot.scatter[i].w / (reference * reference);
-    if (std::isfinite(squared)) relative[i] = squared;
-  }
-  return relative;
-}
-
-}  // namespace
 
 SampleAllocation::SampleAllocation(const PixelErrors& pilot, uint32_t pilotSamples, float leastRate)
     : width_(pilot.width), pilotSamples_(pilotSamples), rates_(pilot.luminances.size(), 1.0f) {

@@ -72,16 +72,15 @@ std::optional<glm::dmat3> toRec709(const Chromaticities& space) {
 }
 
 void convertColor(Image& image, const glm::dmat3& matrix) {
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) image.setRgb(x, y, Rgb(matrix * dvec3(image.rgb(x, y))));
+  for (size_t i = 0; i < image.pixels(); ++i) image.setRgb(i, Rgb(matrix * dvec3(image.rgb(i))));
 }
 
 Message conversionNote(const std::filesystem::path& path, const Chromaticities& from) {
-  return {Message::Kind::Note,
-          fmt::format("{}: its colour is converted to Rec. 709 from red ({:.4g}, {:.4g}), green "
-                      "({:.4g}, {:.4g}), blue ({:.4g}, {:.4g}), white ({:.4g}, {:.4g})",
-                      path.string(), from.red.x, from.red.y, from.green.x, from.green.y,
-                      from.blue.x, from.blue.y, from.white.x, from.white.y)};
+  return note(
+      "{}: its colour is converted to Rec. 709 from red ({:.4g}, {:.4g}), green "
+      "({:.4g}, {:.4g}), blue ({:.4g}, {:.4g}), white ({:.4g}, {:.4g})",
+      path.string(), from.red.x, from.red.y, from.green.x, from.green.y, from.blue.x, from.blue.y,
+      from.white.x, from.white.y);
 }
 
 }  // namespace chromeball

@@ -63,9 +63,8 @@ void fitChannel(std::span<const SourceSample> samples, int channel, FlatField& f
 
 dvec2 findSource(const Image& photograph) {
   float maximum = 0;
-  for (int y = 0; y < photograph.height; ++y)
-    for (int x = 0; x < photograph.width; ++x)
-      maximum = std::max(maximum, luminance(photograph.rgb(x, y)));
+  for (size_t i = 0; i < photograph.pixels(); ++i)
+    maximum = std::max(maximum, luminance(photograph.rgb(i)));
   dvec2 sum(0);
   double weights = 0;
   for (int y = 0; y < photograph.height; ++y)
@@ -137,17 +136,16 @@ FlatField fitFlatField(std::span<const SourceSample> samples, int width, int hei
 
 size_t divide(Image& a, const Image& b) {
   size_t undivided = 0;
-  for (int y = 0; y < a.height; ++y)
-    for (int x = 0; x < a.width; ++x) {
-      bool isDivided = true;
-      for (int c = 0; c < 3; ++c) {
-        const float divisor = b.at(x, y)[c];
-        float& channel = a.at(x, y)[c];
-        isDivided &= divisor > 0;
-        channel = divisor > 0 ? channel / divisor : 0;
-      }
-      undivided += !isDivided;
+  for (size_t i = 0; i < a.pixels(); ++i) {
+    bool isDivided = true;
+    for (int c = 0; c < 3; ++c) {
+      const float divisor = b.at(i)[c];
+      float& channel = a.at(i)[c];
+      isDivided &= divisor > 0;
+      channel = divisor > 0 ? channel / divisor : 0;
     }
+    undivided += !isDivided;
+  }
   return undivided;
 }
 

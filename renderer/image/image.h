@@ -19,18 +19,24 @@ struct Image {
   Image(int w, int h, int c);  // of zeros
 
   bool empty() const { return texels.empty(); }
-  float* at(int x, int y) { return &texels[(size_t(y) * width + x) * channels]; }
-  const float* at(int x, int y) const { return &texels[(size_t(y) * width + x) * channels]; }
+  size_t pixels() const { return size_t(width) * height; }
+  size_t pixel(int x, int y) const { return size_t(y) * width + x; }  // row by row
+  float* at(size_t pixel) { return &texels[pixel * channels]; }
+  const float* at(size_t pixel) const { return &texels[pixel * channels]; }
+  float* at(int x, int y) { return at(pixel(x, y)); }
+  const float* at(int x, int y) const { return at(pixel(x, y)); }
 
   // Colour access. Precondition: at least three channels.
-  Rgb rgb(int x, int y) const {
-    const float* t = at(x, y);
+  Rgb rgb(size_t pixel) const {
+    const float* t = at(pixel);
     return {t[0], t[1], t[2]};
   }
-  void setRgb(int x, int y, const Rgb& c) {
-    float* t = at(x, y);
+  void setRgb(size_t pixel, const Rgb& c) {
+    float* t = at(pixel);
     t[0] = c.x, t[1] = c.y, t[2] = c.z;
   }
+  Rgb rgb(int x, int y) const { return rgb(pixel(x, y)); }
+  void setRgb(int x, int y, const Rgb& c) { setRgb(pixel(x, y), c); }
 };
 
 // The image of three channels with the colour of(x, y) at each texel.

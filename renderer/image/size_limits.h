@@ -3,6 +3,7 @@
 // allocated.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 
@@ -30,6 +31,17 @@ inline void checkImageSize(const std::filesystem::path& path, int64_t width, int
                path.string(), width, height, channels, maxNumbers);
 }
 
+// Throws InputError if a file of `fileBytes` cannot hold `bytes` of texels, each of its bytes at
+// most `maxRatio`; small images may have any ratio.
+inline void checkFileLength(const std::filesystem::path& path, int width, int height,
+                            uint64_t bytes, uint64_t fileBytes, uint64_t maxRatio) {
+  constexpr uint64_t kAlwaysAllowed = 64 << 20;
+  if (bytes > std::max(kAlwaysAllowed, fileBytes * maxRatio))
+    throwInput("{}: too short for {} x {} texels", path.string(), width, height);
+}
+// For a compression without a known bound: an estimate.
+inline constexpr uint64_t kMaxUnknownRatio = 100'000;
+
 // Throws InputError if an image with these numbers, of `bytes` each, and its copies do not fit into
 // the memory that the process may use. For whole images that are read from a file or made for one,
 // before they are allocated. `copies`: as read, as converted, and as written or prepared for
@@ -40,8 +52,7 @@ inline void checkImageMemory(const std::filesystem::path& path, int64_t width, i
   const double image = double(width) * double(height) * double(channels) * double(bytes);
   if (image <= kAlwaysAllowed || copies * image <= memoryBudget()) return;
   throwInput(
-      "{}: {} x {} texels with {} channels take {:.3g} GB of memory in all; {:.3g} GB are "
-      "allowed",
+      "{}: {} x {} texels with {} channels take {:.3g} GB of memory in all; {:.3g} GB are allowed",
       path.string(), width, height, channels, 1e-9 * copies * image, 1e-9 * memoryBudget());
 }
 

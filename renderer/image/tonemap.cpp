@@ -51,6 +51,21 @@ Rgb filmic(const Rgb& color) {
   return curve(color) / curve(Rgb(11.2f));
 }
 
+Rgb toned(ToneOperator tone, const Rgb& c) {
+  switch (tone) {
+    case ToneOperator::Reinhard:
+      return reinhard(c);
+    case ToneOperator::Aces:
+      return aces(c);
+    case ToneOperator::PbrNeutral:
+      return pbrNeutral(c);
+    case ToneOperator::Filmic:
+      return filmic(c);
+    default:
+      return c;
+  }
+}
+
 }  // namespace
 
 float linearToSrgb(float linear) {
@@ -71,7 +86,7 @@ const std::vector<std::string_view>& toneOperatorNames() {
 
 ToneOperator parseToneOperator(std::string_view name) {
   const std::vector<std::string_view>& names = toneOperatorNames();
-  const auto found = std::find(names.begin(), names.end(), name);
+  const auto found = std::ranges::find(names, name);
   if (found == names.end())
     throwInput("unknown tone mapping `{}`; {}", name, didYouMean(name, names));
   return ToneOperator(found - names.begin());
@@ -80,23 +95,7 @@ ToneOperator parseToneOperator(std::string_view name) {
 Rgb display(const DisplayTransform& transform, const Rgb& radiance) {
   Rgb c = radiance * std::exp2(transform.exposure);
   for (int i = 0; i < 3; ++i) c[i] = c[i] > 0 ? std::min(c[i], kMaxChannel) : 0.0f;
-  switch (transform.tone) {
-    case ToneOperator::None:
-      break;
-    case ToneOperator::Reinhard:
-      c = reinhard(c);
-      break;
-    case ToneOperator::Aces:
-      c = aces(c);
-      break;
-    case ToneOperator::PbrNeutral:
-      c = pbrNeutral(c);
-      break;
-    case ToneOperator::Filmic:
-      c = filmic(c);
-      break;
-  }
-  return glm::clamp(c, Rgb(0), Rgb(1));
+  return glm::clamp(toned(transform.tone, c), Rgb(0), Rgb(1));
 }
 
 }  // namespace chromeball

@@ -135,6 +135,25 @@ void addJackknife(Sums& sums, std::span<const Image> repeats, const Reference& r
   sums.differenceError += squaredError(&Sums::difference);
 }
 
+// Lower bound of relative standard errors, which keeps a single point from dominating the fit.
+constexpr double kMinRelativeError = 1e-3;
+
+struct LogPoint {
+  double x, y, weight;
+};
+
+std::vector<LogPoint> logarithms(std::span<const ConvergencePoint> points) {
+  std::vector<LogPoint> logs;
+  for (const ConvergencePoint& point : points) {
+    if (!(point.error.mean > 0) || !(point.samples > 0)) continue;
+    const double relative =
+        std::max(point.error.standardError / point.error.mean, kMinRelativeError);
+    logs.push_back(
+        {std::log(point.samples), std::log(point.error.mean), 1 / (relative * relative)});
+  }
+  return logs;
+}
+
 }  // namespace
 
 BiasVariance biasVariance(std::span<const Image> repeats, const Reference& reference,
@@ -173,29 +192,6 @@ Estimate commonSquaredBias(std::span<const BiasVariance> errors) {
   bias.standardError = std::sqrt(own + squared(ofReference));
   return bias;
 }
-
-namespace {
-
-// Lower bound of relative standard errors, which keeps a single point from dominating the fit.
-constexpr double kMinRelativeError = 1e-3;
-
-struct LogPoint {
-  double x, y, weight;
-};
-
-std::vector<LogPoint> logarithms(std::span<const ConvergencePoint> points) {
-  std::vector<LogPoint> logs;
-  for (const ConvergencePoint& point : points) {
-    if (!(point.error.mean > 0) || !(point.samples > 0)) continue;
-    const double relative =
-        std::max(point.error.standardError / point.error.mean, kMinRelativeError);
-    logs.push_back(
-        {std::log(point.samples), std::log(point.error.mean), 1 / (relative * relative)});
-  }
-  return logs;
-}
-
-}  // namespace
 
 double PowerLaw::logAt(double samples) const { return intercept + slope.mean * std::log(samples); }
 

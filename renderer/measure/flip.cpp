@@ -125,13 +125,12 @@ struct Percept {
 
 Percept perceive(const Image& image, double pixelsPerDegree) {
   const Size size{image.width, image.height};
-  const size_t pixels = size_t(size.width) * size.height;
+  const size_t pixels = image.pixels();
   std::array<Field, 3> opponent;
   opponent.fill(Field(pixels));
   Field achromatic(pixels);
   for (size_t i = 0; i < pixels; ++i) {
-    const float* texel = &image.texels[i * size_t(image.channels)];
-    const dvec3 c = toOpponent(glm::clamp(dvec3(texel[0], texel[1], texel[2]), dvec3(0), dvec3(1)));
+    const dvec3 c = toOpponent(glm::clamp(dvec3(image.rgb(i)), dvec3(0), dvec3(1)));
     for (int k = 0; k < 3; ++k) opponent[size_t(k)][i] = c[k];
     achromatic[i] = (c.x + 16) / 116;
   }
@@ -170,6 +169,26 @@ double colorError(const dvec3& a, const dvec3& b) {
   return kAtKnee + (difference - knee) / (kMax - knee) * (1 - kAtKnee);
 }
 
+// The tone mapper (a x^2 + b x) / (c x^2 + d x + e).
+constexpr double kA = 0.36 * 2.51, kB = 0.6 * 0.03, kC = 0.36 * 2.43, kD = 0.6 * 0.59, kE = 0.14;
+
+double toneMapped(double x) { return (kA * x * x + kB * x) / (kC * x * x + kD * x + kE); }
+
+// The x for which toneMapped(x) = y.
+double inverseToneMapped(double y) {
+  const double a = kA - kC * y, b = kB - kD * y, c = -kE * y;
+  return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
+}
+
+Image exposed(const Image& image, double stops) {
+  Image result(image.width, image.height, 3);
+  for (size_t i = 0; i < image.pixels(); ++i) {
+    const dvec3 c = glm::max(dvec3(image.rgb(i)), dvec3(0)) * std::exp2(stops);
+    result.setRgb(i, Rgb(toneMapped(c.x), toneMapped(c.y), toneMapped(c.z)));
+  }
+  return result;
+}
+
 }  // namespace
 
 Image flip(const Image& reference, const Image& test, double pixelsPerDegree) {
@@ -190,38 +209,10 @@ Image flip(const Image& reference, const Image& test, double pixelsPerDegree) {
 
 // FLIP for images of high dynamic range: the maximum over exposures.
 
-namespace {
-
-using dvec3 = glm::dvec3;
-
-// The tone mapper (a x^2 + b x) / (c x^2 + d x + e).
-constexpr double kA = 0.36 * 2.51, kB = 0.6 * 0.03, kC = 0.36 * 2.43, kD = 0.6 * 0.59, kE = 0.14;
-
-double toneMapped(double x) { return (kA * x * x + kB * x) / (kC * x * x + kD * x + kE); }
-
-// The x for which toneMapped(x) = y.
-double inverseToneMapped(double y) {
-  const double a = kA - kC * y, b = kB - kD * y, c = -kE * y;
-  return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
-}
-
-Image exposed(const Image& image, double stops) {
-  Image result(image.width, image.height, 3);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const dvec3 c = glm::max(dvec3(image.rgb(x, y)), dvec3(0)) * std::exp2(stops);
-      result.setRgb(x, y, Rgb(toneMapped(c.x), toneMapped(c.y), toneMapped(c.z)));
-    }
-  return result;
-}
-
-}  // namespace
-
 Image hdrFlip(const Image& reference, const Image& test, double pixelsPerDegree) {
   std::vector<double> luminances;
-  for (int y = 0; y < reference.height; ++y)
-    for (int x = 0; x < reference.width; ++x)
-      luminances.push_back(std::max(luminance(reference.rgb(x, y)), 1e-6f));
+  for (size_t i = 0; i < reference.pixels(); ++i)
+    luminances.push_back(std::max(luminance(reference.rgb(i)), 1e-6f));
   std::sort(luminances.begin(), luminances.end());
   const double target = inverseToneMapped(0.85);
   const double start = std::log2(target / luminances.back());

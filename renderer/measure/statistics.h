@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hypothesis tests for distributions and means.
+// Hypothesis tests for means.
 #pragma once
 
 #include <span>
@@ -7,16 +7,6 @@
 #include "image/image.h"
 
 namespace chromeball {
-
-// Pearson's chi-square test of observed against expected counts. Cells with an expected count below
-// `minimum` are pooled.
-struct ChiSquare {
-  double statistic = 0;
-  int degreesOfFreedom = 0;
-  double pValue = 1;  // probability of such a statistic if the distribution is as expected
-};
-ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double> expected,
-                        double minimum = 5);
 
 // Mean and variance of independent repeats.
 struct Moments {
@@ -26,10 +16,10 @@ struct Moments {
   static Moments of(std::span<const double> values);
 };
 
+// The probability that Student's t is at least as far from 0; 0 if `t` is not finite.
+double twoSidedStudent(double t, double degreesOfFreedom);
 // p-value of the hypothesis that both means are equal (Welch's t-test, two-sided).
 double welchTest(const Moments& a, const Moments& b);
-// p-value of the hypothesis that the mean is `truth` (t-test, two-sided).
-double tTest(const Moments& a, double truth);
 
 // The significance level of each of `tests` independent tests, if the probability that any of them
 // rejects a true hypothesis is to be `significance` (Sidak 1967).

@@ -83,10 +83,8 @@ Messages mergeEqualRows(std::vector<std::string>& rows) {
   rows = kept;
   Messages notes;
   for (const auto& [first, others] : dropped)
-    notes.push_back(
-        {Message::Kind::Note,
-         fmt::format("{} {} the same image as {}, which is compared alone", fmt::join(others, ", "),
-                     others.size() == 1 ? "is" : "are", first)});
+    addNote(notes, "{} {} the same image as {}, which is compared alone", fmt::join(others, ", "),
+            others.size() == 1 ? "is" : "are", first);
   return notes;
 }
 

@@ -50,9 +50,8 @@ void addDepthCuts(const RenderSettings& settings, const DepthCut& cut, Messages&
     const char* remedy = !isOfDirect(limit, settings) ? "a higher one"
                          : settings.maxDepth > 1      ? "--integrator path"
                                                  : "--integrator path with a higher --max-depth";
-    messages.push_back(
-        {Message::Kind::Warning, fmt::format("{} cut about {:.3g}% of the light; {} keeps it",
-                                             limitGiven(limit, settings), 100 * fraction, remedy)});
+    addWarning(messages, "{} cut about {:.3g}% of the light; {} keeps it",
+               limitGiven(limit, settings), 100 * fraction, remedy);
   }
 }
 

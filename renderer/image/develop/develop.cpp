@@ -3,32 +3,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "image/develop/bloom.h"
-#include "image/develop/vignette.h"
 
 namespace chromeball {
 namespace {
 
 size_t clearInvalid(Image& image) {
-  const size_t channels = size_t(image.channels);
   size_t count = 0;
-  for (size_t i = 0; i < image.texels.size(); i += channels) {
-    const auto pixel = image.texels.begin() + ptrdiff_t(i);
-    if (std::all_of(pixel, pixel + ptrdiff_t(channels), [](float x) { return std::isfinite(x); }))
-      continue;
-    std::fill_n(pixel, channels, 0.0f);
+  for (size_t i = 0; i < image.pixels(); ++i) {
+    const std::span<float> pixel(image.at(i), size_t(image.channels));
+    if (std::ranges::all_of(pixel, [](float x) { return std::isfinite(x); })) continue;
+    std::ranges::fill(pixel, 0.0f);
     ++count;
   }
   return count;
 }
 
 void clipColor(Image& image, float maximum) {
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      float* pixel = image.at(x, y);
-      for (int c = 0; c < 3; ++c) pixel[c] = std::min(pixel[c], maximum);
-    }
+  for (size_t i = 0; i < image.pixels(); ++i)
+    for (int c = 0; c < 3; ++c) image.at(i)[c] = std::min(image.at(i)[c], maximum);
 }
 
 size_t countLimited(const Image& depth, const ThinLens& lens, const ViewFrame& frame) {

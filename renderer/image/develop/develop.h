@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "image/develop/bloom.h"
-#include "image/develop/depth_blur.h"
+#include "image/develop/lens.h"
 #include "image/develop/motion_blur.h"
 
 namespace chromeball {

@@ -25,9 +25,14 @@ uint64_t number(std::span<const uint8_t> bytes, bool bigEndian) {
   return value;
 }
 
+void put(std::span<uint8_t> to, uint64_t value, bool bigEndian) {
+  for (size_t i = 0; i < to.size(); ++i)
+    to[i] = uint8_t(value >> 8 * (bigEndian ? to.size() - 1 - i : i));
+}
+
 void append(std::vector<uint8_t>& bytes, uint64_t value, size_t count, bool bigEndian) {
-  for (size_t i = 0; i < count; ++i)
-    bytes.push_back(uint8_t(value >> 8 * (bigEndian ? count - 1 - i : i)));
+  bytes.resize(bytes.size() + count);
+  put(std::span(bytes).last(count), value, bigEndian);
 }
 
 struct FirstDirectory {
@@ -49,6 +54,37 @@ std::optional<FirstDirectory> firstDirectoryOf(std::span<const uint8_t> file) {
   const size_t first = directory + countBytes;
   if (count > (file.size() - first) / entryBytes) return {};
   return FirstDirectory{bigEndian, offsetBytes, countBytes, entryBytes, directory, first, count};
+}
+
+// Replaces all numbers of an entry of the directory by `change` of them. Of one that may become
+// large the type becomes LONG.
+template <class Change>
+void changeNumbers(std::vector<uint8_t>& file, const FirstDirectory& directory, uint64_t tag,
+                   const Change& change) {
+  constexpr uint64_t kLong = 4;
+  const auto at = [&](size_t place, size_t bytes) { return std::span(file).subspan(place, bytes); };
+  const auto get = [&](size_t place, size_t bytes) {
+    return number(at(place, bytes), directory.bigEndian);
+  };
+  for (size_t i = 0; i < directory.count; ++i) {
+    const size_t entry = directory.first + i * directory.entryBytes;
+    if (get(entry, 2) != tag) continue;
+    const uint64_t type = get(entry + 2, 2), count = get(entry + 4, directory.offsetBytes);
+    const size_t bytes = type == kShort ? 2 : 4, field = entry + 4 + directory.offsetBytes;
+    if ((type != kShort && type != kLong) || count > file.size() / bytes)
+      throw std::runtime_error("its directory is damaged");
+    if (count == 1) {
+      const uint64_t changed = change(get(field, bytes));
+      put(at(entry + 2, 2), kLong, directory.bigEndian);
+      put(at(field, 4), changed, directory.bigEndian);
+      continue;
+    }
+    const size_t first =
+        count * bytes <= directory.offsetBytes ? field : get(field, directory.offsetBytes);
+    if (first > file.size() - count * bytes) throw std::runtime_error("its directory is damaged");
+    for (size_t k = first; k < first + count * bytes; k += bytes)
+      put(at(k, bytes), change(get(k, bytes)), directory.bigEndian);
+  }
 }
 
 }  // namespace
@@ -91,66 +127,11 @@ std::vector<uint8_t> stripTiff(std::span<const uint8_t> file) {
   if (entries.size() > count * entryBytes) {
     at = (file.size() + 1) / 2 * 2;
     stripped.resize(at + kept.size());
-    std::vector<uint8_t> offset;
-    append(offset, at, offsetBytes, bigEndian);
-    std::ranges::copy(offset, stripped.begin() + ptrdiff_t(offsetBytes));
+    put(std::span(stripped).subspan(offsetBytes, offsetBytes), at, bigEndian);
   }
   std::ranges::copy(kept, stripped.begin() + ptrdiff_t(at));
   return stripped;
 }
-
-namespace {
-
-// Numbers of the first directory, in place.
-class DirectoryNumbers {
- public:
-  DirectoryNumbers(std::vector<uint8_t>& file, const FirstDirectory& directory)
-      : file_(file), directory_(directory) {}
-
-  // Replaces all numbers of the entry by `change` of them. Of one that may become large the type
-  // becomes LONG.
-  template <class Change>
-  void change(uint64_t tag, const Change& change) {
-    for (size_t i = 0; i < directory_.count; ++i) {
-      const size_t entry = directory_.first + i * directory_.entryBytes;
-      if (get(entry, 2) == tag) changeEntry(entry, change);
-    }
-  }
-
- private:
-  template <class Change>
-  void changeEntry(size_t entry, const Change& change) {
-    constexpr uint64_t kLong = 4;
-    const uint64_t type = get(entry + 2, 2), count = get(entry + 4, directory_.offsetBytes);
-    const size_t bytes = type == kShort ? 2 : 4, field = entry + 4 + directory_.offsetBytes;
-    if ((type != kShort && type != kLong) || count > file_.size() / bytes)
-      throw std::runtime_error("its directory is damaged");
-    if (count == 1) {
-      const uint64_t changed = change(get(field, bytes));
-      set(entry + 2, kLong, 2), set(field, changed, 4);
-      return;
-    }
-    const size_t at =
-        count * bytes <= directory_.offsetBytes ? field : get(field, directory_.offsetBytes);
-    if (at > file_.size() - count * bytes) throw std::runtime_error("its directory is damaged");
-    for (size_t i = 0; i < count; ++i)
-      set(at + i * bytes, change(get(at + i * bytes, bytes)), bytes);
-  }
-
-  uint64_t get(size_t at, size_t bytes) const {
-    return number(std::span(file_).subspan(at, bytes), directory_.bigEndian);
-  }
-  void set(size_t at, uint64_t value, size_t bytes) {
-    std::vector<uint8_t> text;
-    append(text, value, bytes, directory_.bigEndian);
-    std::ranges::copy(text, file_.begin() + ptrdiff_t(at));
-  }
-
-  std::vector<uint8_t>& file_;
-  FirstDirectory directory_;
-};
-
-}  // namespace
 
 BytesOfDoubles bytesOfDoubles(std::span<const uint8_t> file) {
   constexpr uint64_t kImageWidth = 256, kPhotometric = 262, kPredictor = 317, kTileWidth = 322,
@@ -158,19 +139,21 @@ BytesOfDoubles bytesOfDoubles(std::span<const uint8_t> file) {
   const std::optional<FirstDirectory> directory = firstDirectoryOf(file);
   if (!directory) throw std::runtime_error("its directory is damaged");
   BytesOfDoubles result{{file.begin(), file.end()}, directory->bigEndian};
-  DirectoryNumbers numbers(result.file, *directory);
+  const auto replace = [&](uint64_t tag, const auto& change) {
+    changeNumbers(result.file, *directory, tag, change);
+  };
   const auto asBytes = [](uint64_t width) {
     if (width > std::numeric_limits<int>::max() / sizeof(double))
       throw std::runtime_error("it is too wide for numbers of 64 bits");
     return width * sizeof(double);
   };
-  numbers.change(kImageWidth, asBytes);
-  numbers.change(kTileWidth, asBytes);
-  numbers.change(kBitsPerSample, [](uint64_t) { return uint64_t(8); });
-  numbers.change(kSampleFormat, [](uint64_t) { return kUnsigned; });
+  replace(kImageWidth, asBytes);
+  replace(kTileWidth, asBytes);
+  replace(kBitsPerSample, [](uint64_t) { return uint64_t(8); });
+  replace(kSampleFormat, [](uint64_t) { return kUnsigned; });
   // The library turns bytes whose 0 is white.
-  numbers.change(kPhotometric, [](uint64_t kind) { return kind == 0 ? kMinIsBlack : kind; });
-  numbers.change(kPredictor, [&](uint64_t predictor) {
+  replace(kPhotometric, [](uint64_t kind) { return kind == 0 ? kMinIsBlack : kind; });
+  replace(kPredictor, [&](uint64_t predictor) {
     result.predictor = int(std::min<uint64_t>(predictor, 99));
     return kNoPredictor;
   });

@@ -7,14 +7,10 @@
 #include <set>
 #include <string_view>
 
+#include "base/text.h"
+
 namespace chromeball {
 namespace {
-
-std::string inLowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
 
 // The segments of a name: "ViewLayer" and "Combined" of "ViewLayer.Combined".
 std::vector<std::string_view> segmentsOf(std::string_view name) {
@@ -25,6 +21,10 @@ std::vector<std::string_view> segmentsOf(std::string_view name) {
     begin = end + 1;
   }
   return segments;
+}
+
+bool isIn(const auto& list, std::string_view word) {
+  return std::ranges::find(list, word) != std::end(list);
 }
 
 // The words of a name, in lower case: "denoising" and "albedo" of "Denoising Albedo", "crypto" and
@@ -71,14 +71,11 @@ Content contentOf(std::string_view segment) {
   // Spaces in names of normals and positions: "Pworld", "Nn", "Pref".
   constexpr std::array kSpaces = {"world", "camera", "cam",    "object", "obj", "ref", "rest",
                                   "eye",   "view",   "screen", "n",      "g",   "s",   "w"};
-  const auto isIn = [](const auto& list, std::string_view word) {
-    return std::find(list.begin(), list.end(), word) != list.end();
-  };
   const auto hasIn = [](const auto& list, const std::string& word) {
     return std::ranges::any_of(list,
                                [&](const char* part) { return word.find(part) != word.npos; });
   };
-  const std::string lower = inLowerCase(segment);
+  const std::string lower = lowerCase(segment);
   if (isIn(kDataSegments, lower)) return Content::Data;
   const std::vector<std::string> words = wordsOf(segment);
   const auto isData = [&](const std::string& word) {
@@ -117,28 +114,24 @@ std::optional<int> colorRank(const std::string& layer) {
   constexpr std::array kLight = {"combined", "beauty", "rgba", "c"};
   if (layer.empty()) return kUnnamed;
   const std::vector<std::string_view> segments = segmentsOf(layer);
-  const auto light = std::find(kLight.begin(), kLight.end(), inLowerCase(segments.back()));
+  const auto light = std::find(kLight.begin(), kLight.end(), lowerCase(segments.back()));
   if (light != kLight.end()) return 1 + int(light - kLight.begin());
   if (contentOf(segments) != Content::Light) return {};
-  const std::vector<std::string> words = wordsOf(segments.back());
-  return std::ranges::find(words, "beauty") != words.end() ? kWithBeauty : kOtherLayer;
+  return isIn(wordsOf(segments.back()), "beauty") ? kWithBeauty : kOtherLayer;
 }
 
 // Y, or the only channel besides alpha, unless that is known to be something else.
 std::optional<std::string> greyChannel(const std::vector<std::string>& channels) {
   constexpr std::array kPartsOfColor = {"R", "G", "B", "X", "Z", "RY", "BY", "U", "V"};
-  const auto isPart = [&](const std::string& channel) {
-    return std::find(kPartsOfColor.begin(), kPartsOfColor.end(), channel) != kPartsOfColor.end();
-  };
-  const bool hasY = std::ranges::find(channels, "Y") != channels.end();
-  if (hasY && std::ranges::none_of(
-                  channels, [&](const auto& channel) { return isPart(channel) && channel != "Z"; }))
-    return "Y";
-  if (hasY) return {};
+  if (isIn(channels, "Y")) {
+    const bool hasOther = std::ranges::any_of(
+        channels, [&](const auto& name) { return isIn(kPartsOfColor, name) && name != "Z"; });
+    return hasOther ? std::nullopt : std::optional<std::string>("Y");
+  }
   std::optional<std::string> only;
   for (const std::string& channel : channels) {
     if (channel == "A") continue;
-    if (only || isPart(channel) || !colorRank(channel)) return {};
+    if (only || isIn(kPartsOfColor, channel) || !colorRank(channel)) return {};
     only = channel;
   }
   return only;

@@ -4,7 +4,6 @@
 #include <webp/decode.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "base/error.h"
 #include "base/memory.h"
@@ -14,16 +13,11 @@
 namespace chromeball {
 namespace {
 
-bool startsWith(std::span<const uint8_t> file, std::string_view magic) {
-  return file.size() >= magic.size() &&
-         std::equal(magic.begin(), magic.end(), file.begin(),
-                    [](char a, uint8_t b) { return uint8_t(a) == b; });
-}
-
 [[noreturn]] void refuseFormat(std::span<const uint8_t> file, const std::string& name) {
-  const char* found = startsWith(file, "\xabKTX 20")                ? "KTX2"
-                      : startsWith(file, "DDS ")                    ? "DDS"
-                      : startsWith(file, "version https://git-lfs") ? "a Git LFS pointer"
+  const std::string_view text = textOf(file);
+  const char* found = text.starts_with("\xabKTX 20")                ? "KTX2"
+                      : text.starts_with("DDS ")                    ? "DDS"
+                      : text.starts_with("version https://git-lfs") ? "a Git LFS pointer"
                                                                     : nullptr;
   if (found) throwInput("{}: is {}; it must be PNG, JPEG or WebP", name, found);
   throwInput("{}: is not a PNG, JPEG or WebP file", name);
@@ -79,12 +73,41 @@ std::vector<Texel> readTexels(SampleReader& reader, typename Texel::value_type u
   return texels;
 }
 
+// Of a still image; the format allows at most 16383 texels per side.
+SampleLayout webpLayout(std::span<const uint8_t> file, const std::string& name) {
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK)
+    throwInput("{}: damaged image: not a WebP", name);
+  if (features.has_animation) throwInput("{}: is an animation; it must be a still image", name);
+  // An image of one colour compresses 25000 : 1. Small images may have any ratio.
+  constexpr uint64_t kAlwaysAllowed = 1 << 24, kMaxRatio = 32768;
+  const uint64_t texels = uint64_t(features.width) * uint64_t(features.height);
+  if (texels > std::max(kAlwaysAllowed, file.size() * kMaxRatio))
+    throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, features.width,
+               features.height, file.size());
+  return {features.width, features.height, features.has_alpha ? 4 : 3};
+}
+
+DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name,
+                        const CheckSize& check) {
+  const SampleLayout layout = webpLayout(file, name);
+  if (check) check(layout);
+  checkTextureMemory(layout, name);
+  DecodedImage image{layout.width, layout.height, {}, {}};
+  image.texels8.resize(size_t(image.width) * size_t(image.height));
+  uint8_t* out = image.texels8.data()->data();
+  if (!WebPDecodeRGBAInto(file.data(), file.size(), out, image.texels8.size() * 4, image.width * 4))
+    throwInput("{}: damaged image", name);
+  return image;
+}
+
 }  // namespace
 
 uint64_t decodedBytes(std::span<const uint8_t> file) {
-  if (imageFormat(file) == ImageFormat::Webp) return webpBytes(file);
   try {
-    const SampleLayout image = openTexture(file, "", {})->layout();
+    const SampleLayout image = imageFormat(file) == ImageFormat::Webp
+                                   ? webpLayout(file, "")
+                                   : openTexture(file, "", {})->layout();
     return uint64_t(image.width) * uint64_t(image.height) * (image.bits > 8 ? sizeof(vec4) : 4);
   } catch (const std::runtime_error&) {
     return 0;
@@ -111,46 +134,6 @@ DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name,
   } catch (const std::runtime_error& error) {
     throwInput("{}: damaged image: {}", name, error.what());
   }
-}
-
-namespace {
-
-// An image of one colour compresses 25000 : 1. Small images may have any ratio.
-bool fitsInto(uint64_t texels, size_t fileBytes) {
-  return texels <= (uint64_t(1) << 24) || texels <= fileBytes * 32768;
-}
-
-}  // namespace
-
-DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name,
-                        const CheckSize& check) {
-  WebPBitstreamFeatures features;
-  if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK)
-    throwInput("{}: damaged image: not a WebP", name);
-  if (features.has_animation) throwInput("{}: is an animation; it must be a still image", name);
-  DecodedImage image;  // the format allows at most 16383 texels per side
-  image.width = features.width;
-  image.height = features.height;
-  const uint64_t texels = uint64_t(image.width) * uint64_t(image.height);
-  if (!fitsInto(texels, file.size()))
-    throwInput("{}: damaged image: {} x {} texels cannot fit into {} bytes", name, image.width,
-               image.height, file.size());
-  const SampleLayout layout{image.width, image.height, features.has_alpha ? 4 : 3};
-  if (check) check(layout);
-  checkTextureMemory(layout, name);
-  image.texels8.resize(texels);
-  uint8_t* out = image.texels8.data()->data();
-  const size_t bytes = image.texels8.size() * 4;
-  if (!WebPDecodeRGBAInto(file.data(), file.size(), out, bytes, image.width * 4))
-    throwInput("{}: damaged image", name);
-  return image;
-}
-
-uint64_t webpBytes(std::span<const uint8_t> file) {
-  WebPBitstreamFeatures features;
-  if (WebPGetFeatures(file.data(), file.size(), &features) != VP8_STATUS_OK) return 0;
-  const uint64_t texels = uint64_t(features.width) * uint64_t(features.height);
-  return fitsInto(texels, file.size()) ? texels * 4 : 0;
 }
 
 }  // namespace chromeball

@@ -45,15 +45,6 @@ DecodedImage decodeImage(std::span<const uint8_t> file, const std::string& name,
 // or claims more than the file can hold.
 uint64_t decodedBytes(std::span<const uint8_t> file);
 
-// Decodes WebP by libwebp.
-
-// The same as decodeImage(), for a WebP file.
-DecodedImage decodeWebp(std::span<const uint8_t> file, const std::string& name,
-                        const CheckSize& check);
-
-// The same as decodedBytes(), for a WebP file.
-uint64_t webpBytes(std::span<const uint8_t> file);
-
 // PNG and JPEG: files of integer samples, decoded row by row.
 
 // An open file. Metadata is skipped: profiles, EXIF blocks and comments are never parsed.

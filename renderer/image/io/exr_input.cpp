@@ -10,7 +10,6 @@
 #include <OpenEXR/ImfRgbaFile.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <set>
 #include <string_view>
@@ -78,15 +77,6 @@ uint64_t bytesPerTexel(const Imf::ChannelList& channels) {
   return bytes;
 }
 
-// The compression ratio of OpenEXR has no known bound; kMaxRatio is an estimate, which small images
-// may exceed.
-void checkExrLength(const fs::path& path, int width, int height, uint64_t texelBytes) {
-  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxRatio = 100'000;
-  const uint64_t bytes = uint64_t(width) * uint64_t(height) * texelBytes;
-  if (bytes > std::max(kAlwaysAllowed, uint64_t(fs::file_size(path)) * kMaxRatio))
-    throwInput("{}: too short for {} x {} texels", path.string(), width, height);
-}
-
 }  // namespace
 
 // The channels as stored: luminance and chroma, if any, not the colour that they encode.
@@ -106,12 +96,6 @@ bool isDeep(const Imf::Header& header) {
   return header.hasType() && Imf::isDeepData(header.type());
 }
 
-std::string choiceText(const fs::path& path, const ColorChannels& color) {
-  if (color.layer.empty() || color.others.empty()) return "";
-  return fmt::format("{}: its colour is that of `{}`, of {} layers with colour", path.string(),
-                     color.layer, color.others.size() + 1);
-}
-
 class ExrInput::Part {
  public:
   explicit Part(const fs::path& path) : path_(path), file_(path.c_str()) {}
@@ -127,6 +111,7 @@ class ExrInput::Part {
     return parts;
   }
   void select(size_t part) { selected_ = int(part); }
+  size_t selected() const { return size_t(selected_); }
   const Imf::Header& header() const { return file_.header(selected_); }
 
   void read(int top, int count, const std::vector<std::string>& channels, float* texels) {
@@ -180,17 +165,18 @@ ExrInput::ExrInput(const fs::path& path, uint64_t maxNumbers) : path_(path) {
   });
 }
 
+ExrInput::ExrInput(ExrInput&&) noexcept = default;
 ExrInput::~ExrInput() = default;
 
 void ExrInput::readHeader() {
   const std::vector<PartChannels> parts = part_->parts();
   if (const auto color = findColorChannels(parts)) {
     part_->select(color->part);
-    partName_ = parts[color->part].name;
-    choice_ = choiceText(path_, *color);
-  } else {
-    partName_ = parts.front().name;
+    if (!color->layer.empty() && !color->others.empty())
+      addNote(contents_.messages, "{}: its colour is that of `{}`, of {} layers with colour",
+              path_.string(), color->layer, color->others.size() + 1);
   }
+  contents_.part = parts[part_->selected()].name;
   const Imf::Header& header = part_->header();
   if (isDeep(header)) throwUnreadable(path_, "deep and volume images are not supported");
   const Imath::Box2i window = header.dataWindow();
@@ -198,12 +184,14 @@ void ExrInput::readHeader() {
   height_ = window.max.y - window.min.y + 1;
   isTiled_ = header.hasTileDescription();
   numbers_ = numbersOf(header.channels());
-  metadata_ = metadataOf(header);
-  placement_ = placementOf(window, header.displayWindow());
-  primaries_ = chromaticitiesOf(header);
+  contents_.metadata = metadataOf(header);
+  contents_.placement = placementOf(window, header.displayWindow());
+  contents_.primaries = chromaticitiesOf(header);
   pixelAspectRatio_ = header.pixelAspectRatio();
-  checkExrLength(path_, width_, height_, bytesPerTexel(header.channels()));
-  channels_ = channelsOf(header.channels());
+  checkFileLength(path_, width_, height_,
+                  uint64_t(width_) * uint64_t(height_) * bytesPerTexel(header.channels()),
+                  fs::file_size(path_), kMaxUnknownRatio);
+  contents_.channels = channelsOf(header.channels());
   if (isLuminanceChroma(header.channels())) {
     if (parts.size() > 1)
       throwUnreadable(path_, "luminance and chroma in one of several parts are not supported");
@@ -224,8 +212,8 @@ void ExrInput::read(int top, int count, float* texels) {
   const int blocks = std::max(kTexels / (width_ * rowsOfBlock_), 1);
   readByLibrary(path_, [&] {
     forParts(size_t(count), size_t(blocks) * size_t(rowsOfBlock_), [&](size_t begin, size_t end) {
-      part_->read(top + int(begin), int(end - begin), channels_,
-                  texels + begin * size_t(width_) * channels_.size());
+      part_->read(top + int(begin), int(end - begin), channels(),
+                  texels + begin * size_t(width_) * channels().size());
     });
   });
 }

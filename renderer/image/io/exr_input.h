@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,19 +20,15 @@ class ExrInput {
 
   // `maxNumbers`: the most that the image may have.
   ExrInput(const std::filesystem::path& path, uint64_t maxNumbers);
+  ExrInput(ExrInput&&) noexcept;
   ~ExrInput();
 
   int width() const { return width_; }  // of the data window
   int height() const { return height_; }
-  const std::vector<std::string>& channels() const { return channels_; }
-  const Metadata& metadata() const { return metadata_; }
-  const std::optional<Placement>& placement() const { return placement_; }
-  const std::string& part() const { return partName_; }  // empty: the only one
-  const std::optional<Chromaticities>& primaries() const { return primaries_; }
+  // All but the texels. If several layers or parts have colour, a message names the chosen one.
+  const ImageFile& contents() const { return contents_; }
+  const std::vector<std::string>& channels() const { return contents_.channels; }
   double pixelAspectRatio() const { return pixelAspectRatio_; }  // width / height
-  // If several layers or parts have colour: one line that names the one that was chosen; else
-  // empty.
-  const std::string& choice() const { return choice_; }
   Numbers numbers() const { return numbers_; }
   bool isTiled() const { return isTiled_; }
   int rowsOfBlock() const { return rowsOfBlock_; }  // rows that are compressed together
@@ -48,11 +43,7 @@ class ExrInput {
 
   std::filesystem::path path_;
   int rowsOfBlock_ = 1, width_ = 0, height_ = 0;
-  std::vector<std::string> channels_;
-  Metadata metadata_;
-  std::optional<Placement> placement_;
-  std::string partName_, choice_;
-  std::optional<Chromaticities> primaries_;
+  ImageFile contents_;
   double pixelAspectRatio_ = 1;
   Numbers numbers_ = Numbers::Half;
   bool isTiled_ = false;

@@ -9,7 +9,6 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
@@ -19,7 +18,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "image/io/exr_input.h"
 #include "image/io/exr_metadata.h"
 #include "image/io/exr_state.h"
 #include "image/io/image_format.h"
@@ -90,9 +88,8 @@ Imf::Header headerOf(const ExrLayout& layout) {
 void interleave(std::span<const Image* const> images, int top, Image& rows) {
   int offset = 0;
   for (const Image* image : images) {
-    for (int y = 0; y < rows.height; ++y)
-      for (int x = 0; x < rows.width; ++x)
-        std::copy_n(image->at(x, top + y), image->channels, rows.at(x, y) + offset);
+    for (size_t i = 0; i < rows.pixels(); ++i)
+      std::copy_n(image->at(image->pixel(0, top) + i), image->channels, rows.at(i) + offset);
     offset += image->channels;
   }
   assert(offset == rows.channels);
@@ -105,6 +102,21 @@ int rowsAtOnce(const ExrLayout& layout) {
   const auto floatsPerRow = int64_t(layout.width) * int64_t(layout.channels.size());
   return int(std::clamp<int64_t>(kFloatsWrittenAtOnce / floatsPerRow, layout.separateRows ? 1 : 16,
                                  kMost));
+}
+
+std::vector<std::string> channelsOf(const OutputImage& output) {
+  std::vector<std::string> names;
+  for (const Layer& layer : output.layers) {
+    if (layer.channels.empty()) names.push_back(layer.name);
+    for (const char letter : layer.channels)
+      names.push_back(layer.name.empty() ? std::string(1, letter) : layer.name + '.' + letter);
+  }
+  return names;
+}
+
+const fs::path& checkedExr(const fs::path& path) {
+  if (imageFormat(path) != ImageFormat::Exr) throwUnreadable(path, "it is not an EXR file");
+  return path;
 }
 
 }  // namespace
@@ -211,20 +223,6 @@ double ExrRowsWriter::bufferBytes(int width, size_t channels) {
   return 1.5 * atOnce + 2.0 * std::thread::hardware_concurrency() * 3 * row;
 }
 
-namespace {
-
-std::vector<std::string> channelsOf(const OutputImage& output) {
-  std::vector<std::string> names;
-  for (const Layer& layer : output.layers) {
-    if (layer.channels.empty()) names.push_back(layer.name);
-    for (const char letter : layer.channels)
-      names.push_back(layer.name.empty() ? std::string(1, letter) : layer.name + '.' + letter);
-  }
-  return names;
-}
-
-}  // namespace
-
 void writeExr(const std::filesystem::path& path, const OutputImage& output) {
   const Image& first = output.layers.front().image;
   ExrRowsWriter writer(path, {.width = first.width,
@@ -238,53 +236,23 @@ void writeExr(const std::filesystem::path& path, const OutputImage& output) {
   writer.commit(output.state);
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-
-std::unique_ptr<ExrInput> openRows(const fs::path& path, uint64_t maxNumbers) {
-  checkReadable(path);
-  std::array<char, kFormatBytes> magic{};
-  std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
-  if (imageFormat({reinterpret_cast<const uint8_t*>(magic.data()), magic.size()}) !=
-      ImageFormat::Exr)
-    throwUnreadable(path, "it is not an EXR file");
-  auto input = std::make_unique<ExrInput>(path, maxNumbers);
-  if (input->isTiled())
-    throwUnreadable(path, "deep, volume and tiled images are not supported here");
-  if (input->numbers() != ExrInput::Numbers::Half && input->numbers() != ExrInput::Numbers::Float)
-    throwUnreadable(path, "its channels should be all of 32 or all of 16 bits, not integers");
-  return input;
-}
-
-}  // namespace
-
 ExrRowsReader::ExrRowsReader(const fs::path& path, uint64_t maxNumbers)
-    : input_(openRows(path, maxNumbers)) {}
-
-ExrRowsReader::ExrRowsReader(ExrRowsReader&&) noexcept = default;
-ExrRowsReader::~ExrRowsReader() = default;
-
-int ExrRowsReader::width() const { return input_->width(); }
-int ExrRowsReader::height() const { return input_->height(); }
-const std::vector<std::string>& ExrRowsReader::channels() const { return input_->channels(); }
-const Metadata& ExrRowsReader::metadata() const { return input_->metadata(); }
-
-const std::optional<Placement>& ExrRowsReader::placement() const { return input_->placement(); }
-const std::optional<Chromaticities>& ExrRowsReader::primaries() const {
-  return input_->primaries();
+    : ExrInput(checkedExr(path), maxNumbers) {
+  if (isTiled()) throwUnreadable(path, "deep, volume and tiled images are not supported here");
+  if (numbers() != Numbers::Half && numbers() != Numbers::Float)
+    throwUnreadable(path, "its channels should be all of 32 or all of 16 bits, not integers");
 }
 
 Image ExrRowsReader::read(int top, int count) {
   Image rows(width(), count, int(channels().size()));
-  input_->read(top, count, rows.texels.data());
+  ExrInput::read(top, count, rows.texels.data());
   return rows;
 }
 
 // OpenEXR's buffers: two blocks per thread, with their compression.
 double ExrRowsReader::bufferBytes() const {
   const double row = double(sizeof(float)) * width() * double(channels().size());
-  return row * 2.0 * std::thread::hardware_concurrency() * 3 * input_->rowsOfBlock();
+  return row * 2.0 * std::thread::hardware_concurrency() * 3 * rowsOfBlock();
 }
 
 }  // namespace chromeball

@@ -13,7 +13,7 @@
 
 #include "base/archive.h"
 #include "image/image.h"
-#include "image/io/read_image.h"
+#include "image/io/exr_input.h"
 #include "image/io/write_image.h"
 
 namespace chromeball {
@@ -63,32 +63,18 @@ void writeExr(const std::filesystem::path& path, const OutputImage& output);
 
 // Reads OpenEXR files by bands of rows, so that an image larger than the memory can be read.
 
-class ExrInput;
-
 // A file of scanlines with channels of one type, float32 or 16 bits. Functions throw InputError
 // ("FILE: reason").
-class ExrRowsReader {
+class ExrRowsReader : public ExrInput {
  public:
   // `maxNumbers`: the most that the image may have.
   ExrRowsReader(const std::filesystem::path& path, uint64_t maxNumbers);
-  ExrRowsReader(ExrRowsReader&&) noexcept;
-  ~ExrRowsReader();
-
-  int width() const;
-  int height() const;
-  const std::vector<std::string>& channels() const;
-  const Metadata& metadata() const;
-  const std::optional<Placement>& placement() const;  // in the display window, if it differs
-  const std::optional<Chromaticities>& primaries() const;
 
   // All channels of `count` rows from `top` on.
   Image read(int top, int count);
 
   // The most memory that reading takes besides that image, in bytes.
   double bufferBytes() const;
-
- private:
-  std::unique_ptr<ExrInput> input_;
 };
 
 }  // namespace chromeball

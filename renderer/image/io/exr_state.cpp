@@ -2,8 +2,6 @@
 #include "image/io/exr_state.h"
 
 #include <blosc.h>
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -20,32 +18,6 @@ namespace chromeball {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A file that several threads read at once.
-class SharedFile {
- public:
-  explicit SharedFile(const fs::path& path)
-      : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (descriptor_ < 0) throwInput("{}: cannot be read", path.string());
-  }
-  ~SharedFile() { close(descriptor_); }
-  SharedFile(const SharedFile&) = delete;
-  SharedFile& operator=(const SharedFile&) = delete;
-
-  std::string name() const { return path_.string(); }
-  void read(uint64_t at, std::span<char> to) const {
-    while (!to.empty()) {
-      const ssize_t count = pread(descriptor_, to.data(), to.size(), off_t(at));
-      if (count <= 0) throwInput("{}: cannot read the whole file", name());
-      at += uint64_t(count);
-      to = to.subspan(size_t(count));
-    }
-  }
-
- private:
-  fs::path path_;
-  int descriptor_;
-};
 
 class BlockReader : public MemoryReader {
  public:
@@ -72,8 +44,7 @@ struct Layout {
 
 Layout readLayout(const SharedFile& file, uint64_t length) {
   ExrStateFooter footer;
-  if (length >= sizeof(footer))
-    file.read(length - sizeof(footer), {reinterpret_cast<char*>(&footer), sizeof(footer)});
+  if (length >= sizeof(footer)) file.read(length - sizeof(footer), &footer, sizeof(footer));
   if (length < sizeof(footer) || footer.magic != ExrStateFooter::kMagic)
     throwInput("{}: is no checkpoint and no part of a render, or damaged", file.name());
   const auto check = [&](bool holds) {
@@ -89,7 +60,7 @@ Layout readLayout(const SharedFile& file, uint64_t length) {
   take(footer.headLength);
   Layout layout;
   layout.head.resize(footer.headLength + footer.blocks * sizeof(ExrStateBlock));
-  file.read(left, layout.head);
+  file.read(left, layout.head.data(), layout.head.size());
   check(checksum(layout.head) == footer.checksum);
   layout.table.resize(footer.blocks);
   std::copy(layout.head.begin() + ptrdiff_t(footer.headLength), layout.head.end(),
@@ -119,7 +90,7 @@ class StateReader : public MemoryReader {
  private:
   void readBlock(size_t index, size_t i, const std::function<void(Archive&, size_t)>& block) const {
     std::vector<char> bytes(layout_.table[index].length);
-    file_.read(layout_.places[index], bytes);
+    file_.read(layout_.places[index], bytes.data(), bytes.size());
     if (checksum(bytes) != layout_.table[index].checksum)
       throwInput("{}: damaged: its checksum is wrong", file_.name());
     BlockReader reader(bytes, file_.name());
@@ -131,20 +102,6 @@ class StateReader : public MemoryReader {
   const Layout& layout_;
   size_t next_ = 0;  // block
 };
-
-}  // namespace
-
-void readExrState(const fs::path& path, const std::function<void(Archive&)>& read) {
-  checkReadable(path);
-  const SharedFile file(path);
-  const Layout layout = readLayout(file, fs::file_size(path));
-  StateReader reader(file, layout);
-  read(reader);
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 
 // Items are numbers with few bytes that differ: the counts and weights of pixels, the low bytes of
 // sums of few samples. Blosc sorts them by byte.
@@ -213,6 +170,13 @@ class StateWriter : public MemoryWriter {
 };
 
 }  // namespace
+
+void readExrState(const fs::path& path, const std::function<void(Archive&)>& read) {
+  const SharedFile file(path);
+  const Layout layout = readLayout(file, fs::file_size(path));
+  StateReader reader(file, layout);
+  read(reader);
+}
 
 void appendExrState(const fs::path& file, const fs::path& path,
                     const std::function<void(Archive&)>& state) {

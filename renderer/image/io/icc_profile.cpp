@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/icc_profile.h"
 
-#include <glm/mat3x3.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <vector>
+
+#include "image/io/image_format.h"
 
 namespace chromeball {
 namespace {
@@ -18,14 +17,11 @@ using Curve = std::function<double(double)>;
 constexpr size_t kHeaderBytes = 128, kTagDataAt = 8;  // behind a tag's type
 
 uint32_t profileNumber(std::span<const uint8_t> bytes, size_t at, size_t count) {
-  uint32_t number = 0;
-  for (size_t i = 0; i < count; ++i) number = number << 8 | bytes[at + i];
-  return number;
+  return uint32_t(bigEndian(bytes.subspan(at, count)));
 }
 
 bool holdsAt(std::span<const uint8_t> bytes, size_t at, std::string_view text) {
-  return bytes.size() >= at + text.size() &&
-         std::equal(text.begin(), text.end(), bytes.begin() + ptrdiff_t(at));
+  return bytes.size() >= at && textOf(bytes.subspan(at)).starts_with(text);
 }
 
 // `count` numbers of the type s15Fixed16Number; empty if the tag is too short.

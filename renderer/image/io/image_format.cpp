@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/image_format.h"
 
-#include <string_view>
+#include <array>
+#include <fstream>
 #include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
 
 namespace chromeball {
 
@@ -20,7 +22,7 @@ ImageFormat imageFormat(std::span<const uint8_t> firstBytes) {
       {std::string_view("MM\0*", 4), ImageFormat::Tiff},
       {std::string_view("II+\0", 4), ImageFormat::Tiff},  // BigTIFF
       {std::string_view("MM\0+", 4), ImageFormat::Tiff}};
-  const std::string_view bytes(reinterpret_cast<const char*>(firstBytes.data()), firstBytes.size());
+  const std::string_view bytes = textOf(firstBytes);
   for (const auto& [magic, format] : kMagic)
     if (bytes.starts_with(magic)) return format;
   constexpr size_t kTypeAt = 8;  // after the size
@@ -28,6 +30,14 @@ ImageFormat imageFormat(std::span<const uint8_t> firstBytes) {
       bytes.substr(kTypeAt).starts_with("WEBP"))
     return ImageFormat::Webp;
   return ImageFormat::Unknown;
+}
+
+ImageFormat imageFormat(const std::filesystem::path& path) {
+  checkReadable(path);
+  std::array<uint8_t, 12> bytes{};  // that the function above looks at, at most
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+  return imageFormat(std::span(bytes).first(size_t(stream.gcount())));
 }
 
 // Text before the path is dropped, since our message starts with the path, unless the path comes

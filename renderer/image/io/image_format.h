@@ -7,6 +7,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 
@@ -14,9 +15,19 @@ namespace chromeball {
 
 enum class ImageFormat { Exr, RadianceHdr, Pfm, Png, Jpeg, Webp, Tiff, Unknown };
 
-inline constexpr size_t kFormatBytes = 12;  // that imageFormat() looks at, at most
-
 ImageFormat imageFormat(std::span<const uint8_t> firstBytes);
+ImageFormat imageFormat(const std::filesystem::path& path);  // InputError if it cannot be read
+
+inline std::string_view textOf(std::span<const uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// A number of at most eight bytes, the most significant first.
+inline uint64_t bigEndian(std::span<const uint8_t> bytes) {
+  uint64_t number = 0;
+  for (const uint8_t byte : bytes) number = number << 8 | byte;
+  return number;
+}
 
 // Turns exceptions of readers' libraries about a damaged file into an InputError of one line.
 

@@ -15,10 +15,8 @@ namespace fs = std::filesystem;
 
 Image extract(const ImageFile& file, const std::vector<size_t>& channels) {
   Image out(file.image.width, file.image.height, int(channels.size()));
-  const size_t stride = file.image.channels, texelCount = size_t(out.width) * out.height;
-  for (size_t i = 0; i < texelCount; ++i)
-    for (size_t c = 0; c < channels.size(); ++c)
-      out.texels[i * channels.size() + c] = file.image.texels[i * stride + channels[c]];
+  for (size_t i = 0; i < out.pixels(); ++i)
+    for (size_t c = 0; c < channels.size(); ++c) out.at(i)[c] = file.image.at(i)[channels[c]];
   return out;
 }
 

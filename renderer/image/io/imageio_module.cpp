@@ -4,7 +4,6 @@
 #include <dlfcn.h>
 #include <link.h>
 
-#include <algorithm>
 #include <string_view>
 #include <system_error>
 
@@ -66,17 +65,13 @@ std::unique_ptr<ModuleImage> openModuleImage(const char* format, std::span<const
   if (!module.open)
     throwInput(
         "{}: is a {} file, which needs the module {} beside the command or the library ({}); "
-        "convert "
-        "the image to .exr or .png",
+        "convert the image to .exr or .png",
         path.string(), format, kModuleName, module.problem);
   std::unique_ptr<ModuleImage> image(module.open(format, file.data(), file.size(), path.c_str()));
   const ModuleImageHeader& header = image->header();
   checkImageSize(path, header.width, header.height, int64_t(header.channels.size()));
-  // Limits for formats whose compression has no known bound; kMaxRatio is an estimate, which small
-  // images may exceed. For TIFF see pictureDirectory().
-  constexpr uint64_t kAlwaysAllowed = 64 << 20, kMaxRatio = 100'000;
-  if (header.bytes > std::max(kAlwaysAllowed, file.size() * kMaxRatio))
-    throwInput("{}: too short for {} x {} texels", path.string(), header.width, header.height);
+  // For TIFF see pictureDirectory().
+  checkFileLength(path, header.width, header.height, header.bytes, file.size(), kMaxUnknownRatio);
   return image;
 }
 

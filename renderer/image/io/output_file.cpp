@@ -37,11 +37,8 @@ fs::path folderOf(const fs::path& file) {
 
 void checkOutputFile(const std::string& path, const std::vector<std::string_view>& extensions) {
   const fs::path file = path;
-  std::string known;
-  for (const std::string_view extension : extensions)
-    known.append(known.empty() ? "" : " or ").append(extension);
   if (std::find(extensions.begin(), extensions.end(), file.extension()) == extensions.end())
-    throwInput("{}: the name must end in {}", path, known);
+    throwInput("{}: the name must end in {}", path, fmt::join(extensions, " or "));
   checkReplaceable(file);
 }
 

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "image/io/image_format.h"
 #include "image/size_limits.h"
 
 namespace chromeball {
@@ -39,8 +40,7 @@ Number parse(const std::filesystem::path& path, std::string_view word) {
 
 Image readPfm(const std::filesystem::path& path, Messages& messages) {
   const std::vector<uint8_t> bytes = readFile(path);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
-                              std::min<size_t>(bytes.size(), 256));
+  const std::string_view text = textOf(bytes).substr(0, 256);
   size_t position = 0;
   const std::string_view magic = nextWord(text, position);
   if (magic != "PF" && magic != "Pf") throwInput("{}: not a PFM file", path.string());
@@ -52,10 +52,8 @@ Image readPfm(const std::filesystem::path& path, Messages& messages) {
     throwInput("{}: the scale of a PFM, {}, should be a number below or above 0, 1e-20 to 1e20",
                path.string(), scale);
   if (factor != 1)
-    messages.push_back(
-        {Message::Kind::Note,
-         fmt::format("{}: its texels are multiplied by the scale of its header, {:g}",
-                     path.string(), factor)});
+    addNote(messages, "{}: its texels are multiplied by the scale of its header, {:g}",
+            path.string(), factor);
   const bool littleEndian = scale < 0;
   size_t begin = position + 1;  // one white space
 

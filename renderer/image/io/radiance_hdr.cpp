@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/progress.h"
+#include "image/io/image_format.h"
 #include "image/size_limits.h"
 
 namespace chromeball {
@@ -48,8 +49,7 @@ class Reader {
   }
 
   std::string_view line() {
-    const std::string_view rest(reinterpret_cast<const char*>(bytes_.data()) + position_,
-                                bytes_.size() - position_);
+    const std::string_view rest = textOf(bytes_).substr(position_);
     const size_t end = rest.find('\n');
     if (end > 4096) fail("the Radiance header does not end");  // npos too
     position_ += end + 1;

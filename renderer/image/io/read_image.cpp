@@ -2,10 +2,6 @@
 #include "image/io/read_image.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <fstream>
-#include <functional>
 #include <limits>
 
 #include "base/error.h"
@@ -19,7 +15,6 @@
 #include "image/io/icc_profile.h"
 #include "image/io/image_format.h"
 #include "image/io/imageio_module.h"
-#include "image/io/metadata_blocks.h"
 #include "image/io/pfm.h"
 #include "image/io/png_color.h"
 #include "image/io/radiance_hdr.h"
@@ -33,46 +28,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ImageFormat formatOf(const fs::path& path) {
-  checkReadable(path);
-  std::array<uint8_t, kFormatBytes> bytes{};
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-  return imageFormat(std::span(bytes).first(size_t(stream.gcount())));
-}
-
 void warnOfPixels(double aspectRatio, const fs::path& path, Messages& messages) {
   if (aspectRatio == 1) return;
-  messages.push_back({Message::Kind::Warning,
-                      fmt::format("{}: its pixels are not square, {:.4g} times as wide as high; "
-                                  "they are taken as square",
-                                  path.string(), aspectRatio)});
+  addWarning(
+      messages,
+      "{}: its pixels are not square, {:.4g} times as wide as high; they are taken as square",
+      path.string(), aspectRatio);
 }
 
 ImageFile readExr(const fs::path& path) {
   ExrInput input(path, kMaxImageFloats);
-  ImageFile file;
-  file.channels = input.channels();
-  file.metadata = input.metadata();
-  file.placement = input.placement();
-  file.part = input.part();
-  file.primaries = input.primaries();
-  if (!input.choice().empty()) file.messages.push_back({Message::Kind::Note, input.choice()});
+  ImageFile file = input.contents();
   warnOfPixels(input.pixelAspectRatio(), path, file.messages);
-  checkImageMemory(path, input.width(), input.height(), int64_t(input.channels().size()));
-  file.image = Image(input.width(), input.height(), int(input.channels().size()));
+  checkImageMemory(path, input.width(), input.height(), int64_t(file.channels.size()));
+  file.image = Image(input.width(), input.height(), int(file.channels.size()));
   input.read(0, input.height(), file.image.texels.data());
   return file;
 }
 
 // Multiplies the colour by alpha; the texels are linear.
 void associate(Image& image, int alphaChannel) {
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      float* texel = image.at(x, y);
-      for (int c = 0; c < image.channels; ++c)
-        if (c != alphaChannel) texel[c] *= texel[alphaChannel];
-    }
+  for (size_t i = 0; i < image.pixels(); ++i)
+    for (int c = 0; c < image.channels; ++c)
+      if (c != alphaChannel) image.at(i)[c] *= image.at(i)[alphaChannel];
 }
 
 template <class Sample>
@@ -113,10 +91,9 @@ void warnOfProfile(std::span<const uint8_t> bytes, const DecodeSample& decode, c
                    const fs::path& path, ImageFile& file) {
   const IccProfile profile(bytes);
   if (profile.decodesBy(decode) && profile.has(file.primaries)) return;
-  file.messages.push_back({Message::Kind::Warning,
-                           fmt::format("{}: has a colour profile that is not applied; its colours "
-                                       "are read as {}",
-                                       path.string(), space)});
+  addWarning(file.messages,
+             "{}: has a colour profile that is not applied; its colours are read as {}",
+             path.string(), space);
 }
 
 // `color`: what an integer file states beside its profile and its EXIF block. Sets the file's
@@ -142,10 +119,10 @@ void readColors(PngColor color, const std::optional<std::vector<uint8_t>>& profi
                                     : "sRGB",
                   path, file);
   } else if (exifStatesOtherColors(exif)) {
-    file.messages.push_back({Message::Kind::Warning,
-                             fmt::format("{}: its EXIF states other colours than those of sRGB, "
-                                         "such as Adobe RGB; they are read as those of sRGB",
-                                         path.string())});
+    addWarning(file.messages,
+               "{}: its EXIF states other colours than those of sRGB, such as Adobe RGB; they are "
+               "read as those of sRGB",
+               path.string());
   }
 }
 
@@ -153,12 +130,9 @@ ImageFile readSampleFile(const fs::path& path, ImageFormat format, IntegerTexels
   const std::vector<uint8_t> bytes = readFile(path);
   const auto check = [&](const SampleLayout& layout) {
     checkImageSize(path, layout.width, layout.height, layout.channels);
-    // Small images may have any ratio.
-    constexpr uint64_t kAlwaysAllowed = 64 << 20;
     const uint64_t decoded =
         uint64_t(layout.width) * layout.height * layout.channels * (layout.bits / 8);
-    if (decoded > std::max(kAlwaysAllowed, bytes.size() * kMaxDeflateRatio))
-      throwInput("{}: too short for {} x {} texels", path.string(), layout.width, layout.height);
+    checkFileLength(path, layout.width, layout.height, decoded, bytes.size(), kMaxDeflateRatio);
     checkImageMemory(path, layout.width, layout.height, layout.channels);
   };
   const auto reader = format == ImageFormat::Png ? openPng(bytes, check) : openJpeg(bytes, check);
@@ -203,10 +177,10 @@ void readTiffColors(std::span<const uint8_t> bytes, IntegerTexels integers, cons
   std::optional<std::vector<uint8_t>> profile;
   if (!data.empty()) profile.emplace(data.begin(), data.end());
   if (statesGrey(bytes) && file.channels == std::vector<std::string>{"R", "G", "B"})
-    file.messages.push_back({Message::Kind::Warning,
-                             fmt::format("{}: says that it is grey, but has three samples; they "
-                                         "are read as red, green and blue",
-                                         path.string())});
+    addWarning(
+        file.messages,
+        "{}: says that it is grey, but has three samples; they are read as red, green and blue",
+        path.string());
   const std::optional<Chromaticities> primaries = tiffPrimaries(bytes);
   if (!file.integers) {
     file.primaries = primaries;
@@ -215,10 +189,8 @@ void readTiffColors(std::span<const uint8_t> bytes, IntegerTexels integers, cons
   }
   readColors({.primaries = primaries}, profile, bytes, integers, path, file);
   if (hasTransferTable(bytes))
-    file.messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{}: has a TransferFunction that is not applied{}", path.string(),
-                     integers == IntegerTexels::Levels ? "" : "; its texels are read as sRGB")});
+    addWarning(file.messages, "{}: has a TransferFunction that is not applied{}", path.string(),
+               integers == IntegerTexels::Levels ? "" : "; its texels are read as sRGB");
 }
 
 // The file with its picture as the first image, which is the one that the module reads.
@@ -227,10 +199,8 @@ std::vector<uint8_t> withPictureFirst(std::vector<uint8_t> bytes, const fs::path
   const TiffBlock tiff(bytes);
   const uint64_t picture = pictureDirectory(bytes);
   if (picture == tiff.firstDirectory()) return bytes;
-  messages.push_back({Message::Kind::Note,
-                      fmt::format("{}: its first image is a thumbnail or a mask; the first full "
-                                  "one is read",
-                                  path.string())});
+  addNote(messages, "{}: its first image is a thumbnail or a mask; the first full one is read",
+          path.string());
   return tiff.withFirstDirectory(picture);
 }
 
@@ -291,11 +261,11 @@ std::optional<double> metadataNumber(const Metadata& metadata, const std::string
 }
 
 Metadata readExrMetadata(const fs::path& path) {
-  return ExrInput(path, kMaxImageFloats).metadata();
+  return ExrInput(path, kMaxImageFloats).contents().metadata;
 }
 
 ImageFile readImageFile(const fs::path& path, IntegerTexels integers) {
-  const ImageFormat format = formatOf(path);
+  const ImageFormat format = imageFormat(path);
   ImageFile file = readByLibrary(path, [&]() -> ImageFile {
     switch (format) {
       case ImageFormat::Exr:

@@ -80,6 +80,21 @@ struct LastUsed {
 };
 thread_local LastUsed lastUsed;
 
+std::string temporaryFolder() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (error) throwRun("TMPDIR: no folder for a temporary file for textures: {}", error.message());
+  return folder;
+}
+
+// A file without a name, in `folder`.
+int openTemporary(const std::string& folder) {
+  std::string name = folder + "/chromeball-texels-XXXXXX";
+  const int file = mkostemp(name.data(), O_CLOEXEC);
+  if (file >= 0) unlink(name.c_str());
+  return file;
+}
+
 }  // namespace
 
 struct TexelFile::State {
@@ -152,25 +167,6 @@ void TexelFile::check() const { state_->cache.check(); }
 size_t TexelFile::byteCount() const { return state_->cache.byteCount(); }
 
 size_t TexelFile::cacheBytes() const { return state_->cache.cacheBytes(); }
-
-namespace {
-
-std::string temporaryFolder() {
-  std::error_code error;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
-  if (error) throwRun("TMPDIR: no folder for a temporary file for textures: {}", error.message());
-  return folder;
-}
-
-// A file without a name, in `folder`.
-int openTemporary(const std::string& folder) {
-  std::string name = folder + "/chromeball-texels-XXXXXX";
-  const int file = mkostemp(name.data(), O_CLOEXEC);
-  if (file >= 0) unlink(name.c_str());
-  return file;
-}
-
-}  // namespace
 
 TileCache::TileCache(size_t bytes) : folder_(temporaryFolder()), cacheBytes_(bytes) {
   file_ = openTemporary(folder_);

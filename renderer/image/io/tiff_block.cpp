@@ -10,8 +10,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "image/size_limits.h"
-
 namespace chromeball {
 namespace {
 
@@ -29,119 +27,10 @@ enum TiffType : uint16_t {
 
 // The size of an unsigned integer type; 0 for another type.
 uint64_t integerBytes(uint64_t type) {
-  switch (type) {
-    case kShort:
-      return 2;
-    case kLong:
-    case kIfd:
-      return 4;
-    case kLong8:
-    case kIfd8:
-      return 8;
-    default:
-      return 0;
-  }
+  if (type == kShort) return 2;
+  if (type == kLong || type == kIfd) return 4;
+  return type == kLong8 || type == kIfd8 ? 8 : 0;
 }
-
-std::optional<double> positiveOrNone(double number) {
-  return number > 0 && std::isfinite(number) ? std::optional(number) : std::nullopt;
-}
-
-}  // namespace
-
-uint64_t TiffBlock::number(uint64_t at, uint64_t count) const {
-  if (count > bytes_.size() || at > bytes_.size() - count) return 0;
-  uint64_t result = 0;
-  for (uint64_t i = 0; i < count; ++i)
-    result |= uint64_t(bytes_[at + i]) << 8 * (bigEndian_ ? count - 1 - i : i);
-  return result;
-}
-
-// The number of entries, no more than the file can have.
-uint64_t TiffBlock::entriesOf(uint64_t directory) const {
-  return std::min<uint64_t>(number(directory, countBytes()), bytes_.size() / entryBytes());
-}
-
-std::optional<uint64_t> TiffBlock::entryOf(uint64_t directory, uint16_t tag) const {
-  const uint64_t count = entriesOf(directory);
-  for (uint64_t i = 0; i < count; ++i) {
-    const uint64_t entry = directory + countBytes() + i * entryBytes();
-    if (number(entry, 2) == tag) return entry;
-  }
-  return std::nullopt;
-}
-
-uint64_t TiffBlock::nextDirectory(uint64_t directory) const {
-  return number(directory + countBytes() + entriesOf(directory) * entryBytes(), offsetBytes());
-}
-
-std::optional<double> TiffBlock::find(uint64_t directory, uint16_t tag) const {
-  const std::optional<uint64_t> entry = entryOf(directory, tag);
-  if (!entry) return std::nullopt;
-  const uint64_t at = *entry + 4 + offsetBytes(), type = number(*entry + 2, 2);
-  if (type == kRational) {
-    const uint64_t rational = isBig_ ? at : number(at, 4);
-    return positiveOrNone(double(number(rational, 4)) / double(number(rational + 4, 4)));
-  }
-  const std::vector<uint64_t> values = integers(directory, tag);
-  return values.empty() ? std::nullopt : positiveOrNone(double(values.front()));
-}
-
-std::vector<double> TiffBlock::rationals(uint64_t directory, uint16_t tag) const {
-  constexpr uint64_t kBytes = 8;
-  const std::optional<uint64_t> entry = entryOf(directory, tag);
-  if (!entry || number(*entry + 2, 2) != kRational) return {};
-  const uint64_t count = std::min(number(*entry + 4, offsetBytes()), bytes_.size() / kBytes);
-  const uint64_t field = *entry + 4 + offsetBytes();  // has the value if it fits into it
-  const uint64_t at = kBytes * count <= offsetBytes() ? field : number(field, offsetBytes());
-  std::vector<double> values;
-  for (uint64_t i = 0; i < count; ++i)
-    values.push_back(double(number(at + i * kBytes, 4)) / double(number(at + i * kBytes + 4, 4)));
-  return values;
-}
-
-std::vector<uint64_t> TiffBlock::integers(uint64_t directory, uint16_t tag) const {
-  const std::optional<uint64_t> entry = entryOf(directory, tag);
-  const uint64_t bytes = entry ? integerBytes(number(*entry + 2, 2)) : 0;
-  if (bytes == 0) return {};
-  const uint64_t count = std::min(number(*entry + 4, offsetBytes()), bytes_.size() / bytes);
-  const uint64_t field = *entry + 4 + offsetBytes();  // has the values if they fit into it
-  const uint64_t at = bytes * count <= offsetBytes() ? field : number(field, offsetBytes());
-  std::vector<uint64_t> values;
-  for (uint64_t i = 0; i < count; ++i) values.push_back(number(at + i * bytes, bytes));
-  return values;
-}
-
-std::span<const uint8_t> TiffBlock::bytes(uint64_t directory, uint16_t tag) const {
-  const std::optional<uint64_t> entry = entryOf(directory, tag);
-  if (!entry) return {};
-  const uint64_t type = number(*entry + 2, 2), count = number(*entry + 4, offsetBytes());
-  const uint64_t field = *entry + 4 + offsetBytes();  // has the value if it fits into it
-  const uint64_t at = count <= offsetBytes() ? field : number(field, offsetBytes());
-  if ((type != kByte && type != kUndefined) || at > bytes_.size() || count > bytes_.size() - at)
-    return {};
-  return bytes_.subspan(at, count);
-}
-
-std::vector<uint8_t> TiffBlock::changed(uint64_t at, uint64_t count, uint64_t value) const {
-  std::vector<uint8_t> bytes(bytes_.begin(), bytes_.end());
-  for (uint64_t i = 0; i < count && at + i < bytes.size(); ++i)
-    bytes[at + i] = uint8_t(value >> 8 * (bigEndian_ ? count - 1 - i : i));
-  return bytes;
-}
-
-std::vector<uint8_t> TiffBlock::withFirstDirectory(uint64_t directory) const {
-  return changed(firstDirectoryAt(), offsetBytes(), directory);
-}
-
-// A single value is in its entry.
-std::vector<uint8_t> TiffBlock::withInteger(uint64_t directory, uint16_t tag,
-                                            uint64_t value) const {
-  const uint64_t entry = entryOf(directory, tag).value();
-  return changed(entry + 4 + offsetBytes(), integerBytes(number(entry + 2, 2)), value);
-}
-
-namespace {
 
 class Inflater {
  public:
@@ -173,6 +62,96 @@ class Inflater {
 };
 
 }  // namespace
+
+uint64_t TiffBlock::number(uint64_t at, uint64_t count) const {
+  if (count > bytes_.size() || at > bytes_.size() - count) return 0;
+  uint64_t result = 0;
+  for (uint64_t i = 0; i < count; ++i)
+    result |= uint64_t(bytes_[at + i]) << 8 * (bigEndian_ ? count - 1 - i : i);
+  return result;
+}
+
+// The number of entries, no more than the file can have.
+uint64_t TiffBlock::entriesOf(uint64_t directory) const {
+  return std::min<uint64_t>(number(directory, countBytes()), bytes_.size() / entryBytes());
+}
+
+std::optional<uint64_t> TiffBlock::entryOf(uint64_t directory, uint16_t tag) const {
+  const uint64_t count = entriesOf(directory);
+  for (uint64_t i = 0; i < count; ++i) {
+    const uint64_t entry = directory + countBytes() + i * entryBytes();
+    if (number(entry, 2) == tag) return entry;
+  }
+  return std::nullopt;
+}
+
+uint64_t TiffBlock::nextDirectory(uint64_t directory) const {
+  return number(directory + countBytes() + entriesOf(directory) * entryBytes(), offsetBytes());
+}
+
+std::optional<double> TiffBlock::find(uint64_t directory, uint16_t tag) const {
+  const std::vector<double> ratios = rationals(directory, tag);
+  const std::vector<uint64_t> whole = integers(directory, tag);
+  const double first = !ratios.empty()  ? ratios.front()
+                       : !whole.empty() ? double(whole.front())
+                                        : 0;
+  return first > 0 && std::isfinite(first) ? std::optional(first) : std::nullopt;
+}
+
+// The values are in the entry if they fit into it.
+TiffBlock::Values TiffBlock::valuesOf(uint64_t entry, uint64_t bytesOfEach) const {
+  const uint64_t count = number(entry + 4, offsetBytes()), field = entry + 4 + offsetBytes();
+  const uint64_t most = std::min(count, bytes_.size() / bytesOfEach);
+  return {count, most, bytesOfEach * most <= offsetBytes() ? field : number(field, offsetBytes())};
+}
+
+std::vector<double> TiffBlock::rationals(uint64_t directory, uint16_t tag) const {
+  constexpr uint64_t kBytes = 8;
+  const std::optional<uint64_t> entry = entryOf(directory, tag);
+  if (!entry || number(*entry + 2, 2) != kRational) return {};
+  const auto [count, most, at] = valuesOf(*entry, kBytes);
+  std::vector<double> values;
+  for (uint64_t i = 0; i < most; ++i)
+    values.push_back(double(number(at + i * kBytes, 4)) / double(number(at + i * kBytes + 4, 4)));
+  return values;
+}
+
+std::vector<uint64_t> TiffBlock::integers(uint64_t directory, uint16_t tag) const {
+  const std::optional<uint64_t> entry = entryOf(directory, tag);
+  const uint64_t bytes = entry ? integerBytes(number(*entry + 2, 2)) : 0;
+  if (bytes == 0) return {};
+  const auto [count, most, at] = valuesOf(*entry, bytes);
+  std::vector<uint64_t> values;
+  for (uint64_t i = 0; i < most; ++i) values.push_back(number(at + i * bytes, bytes));
+  return values;
+}
+
+std::span<const uint8_t> TiffBlock::bytes(uint64_t directory, uint16_t tag) const {
+  const std::optional<uint64_t> entry = entryOf(directory, tag);
+  const uint64_t type = entry ? number(*entry + 2, 2) : 0;
+  if (type != kByte && type != kUndefined) return {};
+  const auto [count, most, at] = valuesOf(*entry, 1);
+  if (at > bytes_.size() || count > bytes_.size() - at) return {};
+  return bytes_.subspan(at, count);
+}
+
+std::vector<uint8_t> TiffBlock::changed(uint64_t at, uint64_t count, uint64_t value) const {
+  std::vector<uint8_t> bytes(bytes_.begin(), bytes_.end());
+  for (uint64_t i = 0; i < count && at + i < bytes.size(); ++i)
+    bytes[at + i] = uint8_t(value >> 8 * (bigEndian_ ? count - 1 - i : i));
+  return bytes;
+}
+
+std::vector<uint8_t> TiffBlock::withFirstDirectory(uint64_t directory) const {
+  return changed(firstDirectoryAt(), offsetBytes(), directory);
+}
+
+// A single value is in its entry.
+std::vector<uint8_t> TiffBlock::withInteger(uint64_t directory, uint16_t tag,
+                                            uint64_t value) const {
+  const uint64_t entry = entryOf(directory, tag).value();
+  return changed(entry + 4 + offsetBytes(), integerBytes(number(entry + 2, 2)), value);
+}
 
 void checkDeflate(std::span<const uint8_t> file) {
   const TiffBlock tiff(file);

@@ -49,6 +49,10 @@ class TiffBlock {
   uint64_t entriesOf(uint64_t directory) const;
   std::vector<uint8_t> changed(uint64_t at, uint64_t count, uint64_t value) const;
   std::optional<uint64_t> entryOf(uint64_t directory, uint16_t tag) const;
+  struct Values {
+    uint64_t count, most, at;  // as stated; no more than the file can have; the place of the first
+  };
+  Values valuesOf(uint64_t entry, uint64_t bytesOfEach) const;
 
   std::span<const uint8_t> bytes_;
   bool bigEndian_, isBig_;

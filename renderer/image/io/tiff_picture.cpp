@@ -133,7 +133,7 @@ double maxRatioOf(int compression, double width) {
     case kPackBits:
       return 64;  // 128 bytes in 2
     default:
-      return 100'000;  // an estimate: LZMA and Zstandard repeat a byte almost for ever
+      return double(kMaxUnknownRatio);  // LZMA and Zstandard repeat a byte almost for ever
   }
 }
 
@@ -166,6 +166,16 @@ void checkSizes(const TiffBlock& tiff, uint64_t directory, uint64_t fileBytes) {
                     tileLength, tileDepth, width, height));
 }
 
+constexpr uint16_t kTransferFunction = 301, kWhitePoint = 318, kPrimaryChromaticities = 319;
+
+std::vector<double> chromaticitiesIn(const TiffBlock& tiff, uint16_t tag, size_t count) {
+  std::vector<double> numbers = tiff.rationals(tiff.firstDirectory(), tag);
+  if (numbers.size() != count)
+    throw std::runtime_error(
+        "its WhitePoint or PrimaryChromaticities are not two and six rational numbers");
+  return numbers;
+}
+
 }  // namespace
 
 uint64_t pictureDirectory(std::span<const uint8_t> file) {
@@ -195,8 +205,7 @@ uint64_t pictureDirectory(std::span<const uint8_t> file) {
   // libtiff takes its white, D50, for sRGB's, and ICC's numbers for CIE's.
   if (photometric >= kCieLab && photometric <= kItuLab)
     throw std::runtime_error(
-        "its texels are L*a*b*, of which only 8 bits would be read, tinted: "
-        "convert it to RGB");
+        "its texels are L*a*b*, of which only 8 bits would be read, tinted: convert it to RGB");
   checkWhole(tiff, picture, file.size());
   checkSizes(tiff, picture, file.size());
   return picture;
@@ -210,20 +219,6 @@ std::vector<uint8_t> withStripsInside(std::vector<uint8_t> file) {
   if (rows.size() != 1 || height.size() != 1 || rows[0] <= height[0]) return file;
   return tiff.withInteger(directory, kRowsPerStrip, height[0]);
 }
-
-namespace {
-
-constexpr uint16_t kTransferFunction = 301, kWhitePoint = 318, kPrimaryChromaticities = 319;
-
-std::vector<double> chromaticitiesIn(const TiffBlock& tiff, uint16_t tag, size_t count) {
-  std::vector<double> numbers = tiff.rationals(tiff.firstDirectory(), tag);
-  if (numbers.size() != count)
-    throw std::runtime_error(
-        "its WhitePoint or PrimaryChromaticities are not two and six rational numbers");
-  return numbers;
-}
-
-}  // namespace
 
 std::optional<Chromaticities> tiffPrimaries(std::span<const uint8_t> file) {
   const TiffBlock tiff(file);
@@ -242,10 +237,8 @@ std::optional<Chromaticities> tiffPrimaries(std::span<const uint8_t> file) {
 }
 
 bool statesGrey(std::span<const uint8_t> file) {
-  constexpr uint16_t kPhotometricInterpretation = 262;
   const TiffBlock tiff(file);
-  const std::vector<uint64_t> stated =
-      tiff.integers(tiff.firstDirectory(), kPhotometricInterpretation);
+  const std::vector<uint64_t> stated = tiff.integers(tiff.firstDirectory(), kPhotometric);
   constexpr uint64_t kLargestOfGrey = 1;  // 0 if 0 is white
   return !stated.empty() && stated[0] <= kLargestOfGrey;
 }

@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <csetjmp>
 #include <cstring>
-#include <limits>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -24,102 +22,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string extension(const fs::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return text;
-}
-
 // Colour in a PNG is unassociated; black where alpha is 0. This comes before the tone curve, which
 // is not linear.
 Rgb unassociated(const Rgb& color, float alpha) { return alpha > 0 ? color / alpha : Rgb(0); }
 
-std::vector<uint8_t> encodeColor(const Image& color, const DisplayTransform& transform) {
-  const auto byte = [](float encoded) { return uint8_t(std::lround(255 * encoded)); };
-  const bool hasAlpha = color.channels == 4;
-  std::vector<uint8_t> bytes(size_t(color.width) * color.height * (hasAlpha ? 4 : 3));
-  forRows(color.width, color.height, [&](int y) {
-    uint8_t* to = bytes.data() + bytes.size() / size_t(color.height) * size_t(y);
-    for (int x = 0; x < color.width; ++x) {
-      const float alpha = hasAlpha ? std::clamp(color.at(x, y)[3], 0.0f, 1.0f) : 1;
-      const Rgb shown = display(transform, unassociated(color.rgb(x, y), alpha));
-      for (int c = 0; c < 3; ++c) *to++ = byte(linearToSrgb(shown[c]));
-      if (hasAlpha) *to++ = byte(alpha);
-    }
-  });
-  return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes);
-}
-
 // Repeats grey in three channels.
 Image repeated(const Image& grey) {
   Image color(grey.width, grey.height, 3);
-  for (int y = 0; y < grey.height; ++y)
-    for (int x = 0; x < grey.width; ++x) color.setRgb(x, y, Rgb(*grey.at(x, y)));
+  for (size_t i = 0; i < grey.pixels(); ++i) color.setRgb(i, Rgb(*grey.at(i)));
   return color;
 }
 
 // The formats that hold only the colour.
 Messages writeColor(const fs::path& path, const Image& color, const DisplayTransform& transform) {
   if (color.channels < 3) return writeColor(path, repeated(color), transform);
-  const std::string kind = extension(path);
+  const std::string kind = lowerExtension(path);
   if (kind == ".hdr")
     writeRadianceHdr(path, color);
   else if (kind == ".pfm")
     writePfm(path, color);
   else
-    writeFile(path, encodeColor(color, transform));
+    writeFile(path, encodePng(color, transform));
   return lostLight(path, color);
 }
-
-}  // namespace
-
-std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform) {
-  if (color.channels < 3) return encodeColor(repeated(color), transform);
-  return encodeColor(color, transform);
-}
-
-void checkImageName(const fs::path& path) {
-  constexpr std::array kExtensions = {".exr", ".hdr", ".pfm", ".png"};
-  if (std::find(kExtensions.begin(), kExtensions.end(), extension(path)) == kExtensions.end())
-    throwInput("{}: unknown image format; the name must end in .exr, .hdr, .pfm or .png",
-               path.string());
-}
-
-void checkWritable(const fs::path& path) {
-  checkImageName(path);
-  checkReplaceable(path);
-}
-
-Messages writeImage(const fs::path& path, const OutputImage& output,
-                    const DisplayTransform& transform) {
-  checkWritable(path);
-  if (extension(path) != ".exr") return writeColor(path, output.layers.front().image, transform);
-  writeExr(path, output);
-  return {};
-}
-
-Messages writeInWindow(const fs::path& path, OutputImage output, const fs::path& source,
-                       const DisplayTransform& transform) {
-  if (output.placement && extension(path) != ".exr") {
-    Image& color = output.layers.front().image;
-    color = inDisplayWindow(std::move(color), output.placement, source);
-  }
-  return writeImage(path, output, transform);
-}
-
-Messages writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
-  checkWritable(path);
-  if (color.channels != 1 && color.channels != 3 && color.channels != 4)
-    throwInput("{}: an image of {} channels is no colour; it needs 1, 3 or 4", path.string(),
-               color.channels);
-  if (extension(path) != ".exr") return writeColor(path, color, transform);
-  const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
-  writeExr(path, OutputImage{{{"", letters, color}}, {}, {}, {}});
-  return {};
-}
-
-namespace {
 
 bool isOpaque(const Image& color) {
   for (size_t i = 3; i < color.texels.size(); i += 4)
@@ -131,89 +56,50 @@ std::optional<Message> uncoveredLight(const std::filesystem::path& path, const I
   constexpr float kVisible = 1.0f / 255;
   size_t pixels = 0;
   double lost = 0, light = 0;
-  for (int y = 0; y < color.height; ++y)
-    for (int x = 0; x < color.width; ++x) {
-      const Rgb rgb = color.rgb(x, y);
-      const float alpha = std::clamp(color.at(x, y)[3], 0.0f, 1.0f);
-      light += luminance(rgb);
-      if (alpha >= 0.5f || !(maxComponent(rgb) > alpha + kVisible)) continue;
-      ++pixels;
-      lost += luminance(glm::max(rgb - Rgb(alpha), Rgb(0)));
-    }
+  for (size_t i = 0; i < color.pixels(); ++i) {
+    const Rgb rgb = color.rgb(i);
+    const float alpha = std::clamp(color.at(i)[3], 0.0f, 1.0f);
+    light += luminance(rgb);
+    if (alpha >= 0.5f || !(maxComponent(rgb) > alpha + kVisible)) continue;
+    ++pixels;
+    lost += luminance(glm::max(rgb - Rgb(alpha), Rgb(0)));
+  }
   if (pixels == 0) return {};
-  return Message{
-      Message::Kind::Warning,
-      fmt::format("{}: loses light on {:.2g}% of the pixels, {:.2g}% of the image's: a "
-                  ".png has no color beyond its alpha, and nothing covers the "
-                  "background there; an .exr holds it",
-                  path.string(), 100. * double(pixels) / (double(color.width) * color.height),
-                  100 * lost / light)};
+  return warning(
+      "{}: loses light on {:.2g}% of the pixels, {:.2g}% of the image's: a .png has no color "
+      "beyond its alpha, and nothing covers the background there; an .exr holds it",
+      path.string(), 100. * double(pixels) / (double(color.width) * color.height),
+      100 * lost / light);
 }
 
-// The numbers in the colour's channels that a format cannot hold.
-struct NumbersBeyond {
-  size_t negative = 0, tooLarge = 0, infinite = 0, nan = 0, count = 0;
+// The numbers in the colour's channels that the format cannot hold. Light above white, also
+// infinite light, is not reported for a .png: it is clipped like any bright surface.
+Messages numbersLost(const fs::path& path, const Image& color, bool isHdr) {
+  const int channels = std::min(color.channels, 3);
+  size_t negative = 0, tooLarge = 0, infinite = 0, nan = 0;
   float least = 0, largest = 0;
-
-  NumbersBeyond(const Image& color, float limit) {
-    const int channels = std::min(color.channels, 3);
-    count = size_t(color.width) * size_t(color.height) * size_t(channels);
-    for (int y = 0; y < color.height; ++y)
-      for (int x = 0; x < color.width; ++x)
-        for (int c = 0; c < channels; ++c) add(color.at(x, y)[c], limit);
-  }
-  double percent(size_t numbers) const { return 100. * double(numbers) / double(count); }
-
- private:
-  void add(float number, float limit) {
-    if (number < 0) ++negative, least = std::min(least, number);
-    if (number > limit) ++tooLarge, largest = std::max(largest, number);
-    if (std::isinf(number)) ++infinite;
-    if (std::isnan(number)) ++nan;
-  }
-};
-
-// Light above white, also infinite light, is not reported for a .png: it is clipped like any bright
-// surface.
-Messages numbersLost(const std::filesystem::path& path, const Image& color, bool isHdr) {
-  const NumbersBeyond beyond(color, isHdr ? kMaxRgbe : std::numeric_limits<float>::infinity());
+  for (size_t i = 0; i < color.pixels(); ++i)
+    for (int c = 0; c < channels; ++c) {
+      const float number = color.at(i)[c];
+      negative += number<0, tooLarge += number> kMaxRgbe;
+      infinite += std::isinf(number), nan += std::isnan(number);
+      least = std::min(least, number), largest = std::max(largest, number);
+    }
   Messages messages;
   const auto add = [&](size_t numbers, const std::string& what) {
     if (numbers > 0)
-      messages.push_back({Message::Kind::Warning,
-                          fmt::format("{}: {:.3g}% of the channels are {}; an .exr holds them",
-                                      path.string(), beyond.percent(numbers), what)});
+      addWarning(messages, "{}: {:.3g}% of the channels are {}; an .exr holds them", path.string(),
+                 100. * double(numbers) / double(color.pixels() * size_t(channels)), what);
   };
-  add(beyond.negative, fmt::format("negative, down to {:.3g}, and become 0", beyond.least));
+  add(negative, fmt::format("negative, down to {:.3g}, and become 0", least));
   if (!isHdr) {
-    add(beyond.nan, "NaN, and become 0");
+    add(nan, "NaN, and become 0");
     return messages;
   }
-  add(beyond.tooLarge,
-      fmt::format("above {:.3g}, up to {:.3g}, and are cut", kMaxRgbe, beyond.largest));
-  add(beyond.nan + beyond.infinite, "NaN or infinite, and become 0");
+  add(tooLarge, fmt::format("above {:.3g}, up to {:.3g}, and are cut", kMaxRgbe, largest));
+  add(nan + infinite, "NaN or infinite, and become 0");
   return messages;
 }
-
-}  // namespace
-
-Messages lostLight(const std::filesystem::path& path, const Image& color) {
-  const std::string kind = lowerExtension(path);
-  Messages messages;
-  if ((kind == ".hdr" || kind == ".pfm") && color.channels == 4 && !isOpaque(color))
-    messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{}: holds no alpha, which is lost; an .exr or a .png does", path.string())});
-  if (kind == ".png" && color.channels == 4)
-    if (std::optional<Message> message = uncoveredLight(path, color))
-      messages.push_back(*std::move(message));
-  if (kind == ".png" || kind == ".hdr")
-    for (Message& message : numbersLost(path, color, kind == ".hdr"))
-      messages.push_back(std::move(message));
-  return messages;
-}
-
-namespace {
 
 // The data that libpng's callbacks share. libpng ends by a jump in case of an error, so these have
 // no destructors to run when it jumps.
@@ -253,6 +139,79 @@ bool writePngImage(png_structp png, png_infop info, int width, int height, int c
 }
 
 }  // namespace
+
+std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform) {
+  if (color.channels < 3) return encodePng(repeated(color), transform);
+  const auto byte = [](float encoded) { return uint8_t(std::lround(255 * encoded)); };
+  const bool hasAlpha = color.channels == 4;
+  std::vector<uint8_t> bytes(size_t(color.width) * color.height * (hasAlpha ? 4 : 3));
+  forRows(color.width, color.height, [&](int y) {
+    uint8_t* to = bytes.data() + bytes.size() / size_t(color.height) * size_t(y);
+    for (int x = 0; x < color.width; ++x) {
+      const float alpha = hasAlpha ? std::clamp(color.at(x, y)[3], 0.0f, 1.0f) : 1;
+      const Rgb shown = display(transform, unassociated(color.rgb(x, y), alpha));
+      for (int c = 0; c < 3; ++c) *to++ = byte(linearToSrgb(shown[c]));
+      if (hasAlpha) *to++ = byte(alpha);
+    }
+  });
+  return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes);
+}
+
+void checkImageName(const fs::path& path) {
+  constexpr std::array kExtensions = {".exr", ".hdr", ".pfm", ".png"};
+  if (std::find(kExtensions.begin(), kExtensions.end(), lowerExtension(path)) == kExtensions.end())
+    throwInput("{}: unknown image format; the name must end in .exr, .hdr, .pfm or .png",
+               path.string());
+}
+
+void checkWritable(const fs::path& path) {
+  checkImageName(path);
+  checkReplaceable(path);
+}
+
+Messages writeImage(const fs::path& path, const OutputImage& output,
+                    const DisplayTransform& transform) {
+  checkWritable(path);
+  if (lowerExtension(path) != ".exr")
+    return writeColor(path, output.layers.front().image, transform);
+  writeExr(path, output);
+  return {};
+}
+
+Messages writeInWindow(const fs::path& path, OutputImage output, const fs::path& source,
+                       const DisplayTransform& transform) {
+  if (output.placement && lowerExtension(path) != ".exr") {
+    Image& color = output.layers.front().image;
+    color = inDisplayWindow(std::move(color), output.placement, source);
+  }
+  return writeImage(path, output, transform);
+}
+
+Messages writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {
+  checkWritable(path);
+  if (color.channels != 1 && color.channels != 3 && color.channels != 4)
+    throwInput("{}: an image of {} channels is no colour; it needs 1, 3 or 4", path.string(),
+               color.channels);
+  if (lowerExtension(path) != ".exr") return writeColor(path, color, transform);
+  const char* letters = color.channels >= 4 ? "RGBA" : color.channels == 3 ? "RGB" : "Y";
+  writeExr(path, OutputImage{{{"", letters, color}}, {}, {}, {}});
+  return {};
+}
+
+Messages lostLight(const std::filesystem::path& path, const Image& color) {
+  const std::string kind = lowerExtension(path);
+  Messages messages;
+  if ((kind == ".hdr" || kind == ".pfm") && color.channels == 4 && !isOpaque(color))
+    addWarning(messages, "{}: holds no alpha, which is lost; an .exr or a .png does",
+               path.string());
+  if (kind == ".png" && color.channels == 4)
+    if (std::optional<Message> message = uncoveredLight(path, color))
+      messages.push_back(*std::move(message));
+  if (kind == ".png" || kind == ".hdr")
+    for (Message& message : numbersLost(path, color, kind == ".hdr"))
+      messages.push_back(std::move(message));
+  return messages;
+}
 
 std::vector<uint8_t> encodePng(int width, int height, int channels,
                                std::span<const uint8_t> bytes) {

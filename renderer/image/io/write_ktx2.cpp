@@ -57,12 +57,10 @@ void addHalf(Bytes& bytes, float value, size_t& clipped) {
 }
 
 void addTexels(Bytes& bytes, const Image& faces, size_t& clipped) {
-  for (int y = 0; y < faces.height; ++y)
-    for (int x = 0; x < faces.width; ++x) {
-      const Rgb color = faces.rgb(x, y);
-      for (int c = 0; c < 3; ++c) addHalf(bytes, color[c], clipped);
-      addHalf(bytes, 1, clipped);
-    }
+  for (size_t i = 0; i < faces.pixels(); ++i) {
+    for (int c = 0; c < 3; ++c) addHalf(bytes, faces.at(i)[c], clipped);
+    addHalf(bytes, 1, clipped);
+  }
 }
 
 }  // namespace

@@ -191,10 +191,10 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   addWarnings(series, merged);
   for (size_t i = 0; i < series.files.size(); ++i)
     if (photographs.invalid[i] > 0)
-      merged.messages.push_back(
-          {Message::Kind::Warning, fmt::format("{}: {} channels are NaN or negative; they count as "
-                                               "black",
-                                               series.files[i], photographs.invalid[i])});
+      addWarning(merged.messages,
+                 "{}: {} channels are NaN or negative; they count as "
+                 "black",
+                 series.files[i], photographs.invalid[i]);
   return merged;
 }
 

@@ -40,17 +40,14 @@ LoadedPhotograph loadPhotograph(const std::filesystem::path& path) {
   LoadedPhotograph photograph;
   photograph.messages = file.messages;
   if (file.integers)
-    photograph.messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{}: has integer texels: {}, without the response of the camera, and clipped "
-                     "at white; use an HDR image",
-                     path.string(), decodingOf(file.transfer))});
+    addWarning(photograph.messages,
+               "{}: has integer texels: {}, without the response of the camera, and clipped "
+               "at white; use an HDR image",
+               path.string(), decodingOf(file.transfer));
   photograph.image = colorOf(std::move(file), path);
   const RepairReport repaired = repair(photograph.image, false);
   if (repaired.total() > 0)
-    photograph.messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{}: repaired {}", path.string(), describe(repaired))});
+    addWarning(photograph.messages, "{}: repaired {}", path.string(), describe(repaired));
   return photograph;
 }
 

@@ -120,17 +120,17 @@ double StageWriter::bufferBytes(const DirectionBasis& basis, int width) {
 }
 
 StageReader::StageReader(const std::filesystem::path& path)
-    : path_(path), file_(path, kMaxStageNumbers), basis_(basisOf(path, file_.metadata())) {
+    : path_(path), file_(path, kMaxStageNumbers), basis_(basisOf(path, file_.contents().metadata)) {
   const auto elements = positions(file_.channels(), channelNames(basis_));
   if (!elements)
     throwInput("{}: lacks elements of its basis {}, which has {}", path.string(), basis_.name(),
                basis_.size());
-  if (file_.placement())
+  if (file_.contents().placement)
     throwInput(
         "{}: its data window is not its display window: it was cropped or extended after it was "
         "made; a light stage has all pixels of its picture",
         path.string());
-  if (const auto& primaries = file_.primaries(); primaries && !isRec709(*primaries)) {
+  if (const auto& primaries = file_.contents().primaries; primaries && !isRec709(*primaries)) {
     toRec709_ = toRec709(*primaries);
     if (!toRec709_) throwInput("{}: its primaries are degenerate", path.string());
     messages_.push_back(conversionNote(path, *primaries));

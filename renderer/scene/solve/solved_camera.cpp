@@ -63,8 +63,6 @@ double equivalentOn35mm(const ImageSize& size, double focalLength) {
 
 namespace {
 
-Message warning(std::string text) { return {Message::Kind::Warning, std::move(text)}; }
-
 // The factor by which the RMS of another camera must be larger if noise is not to explain it. With
 // few degrees of freedom n, the best camera may fit by chance: sqrt(F(n, n)) at 95% is 4.4 for 2,
 // 3.0 for 3, 2.2 for 5.
@@ -84,18 +82,19 @@ Messages doubtsAbout(const CameraFit& fit) {
   const ImageSize& size = fit.camera.size;
   const double rms = fit.rms();
   if (rms > kMisfit * std::hypot(size.width, size.height))
-    messages.push_back(warning(fmt::format(
-        "no camera fits: the distances are {:.3g} pixels in the root mean square; check the "
-        "positions, and that pixels count from the top left",
-        rms)));
+    addWarning(messages,
+               "no camera fits: the distances are {:.3g} pixels in the root mean square; check the "
+               "positions, and that pixels count from the top left",
+               rms);
   else if (fit.rivalRms && *fit.rivalRms < leastRatio(fit) * rms)
-    messages.push_back(warning(fmt::format(
+    addWarning(
+        messages,
         "another camera fits nearly as well, with {:.3g} instead of {:.3g} pixels; more points, "
         "not on one plane, tell which is right",
-        *fit.rivalRms, rms)));
+        *fit.rivalRms, rms);
   if (fit.errors.fov && *fit.errors.fov > kUncertain * fit.camera.fov())
-    messages.push_back(
-        warning("the field of view is uncertain by more than a tenth; give it if it is known"));
+    addWarning(messages,
+               "the field of view is uncertain by more than a tenth; give it if it is known");
   return messages;
 }
 
@@ -104,8 +103,8 @@ Messages doubtsAbout(const std::vector<ObservedPoint>& points, const ImageSize& 
   for (const ObservedPoint& point : points) {
     const dvec2& p = point.pixel;
     if (!(p.x >= 0 && p.y >= 0 && p.x <= size.width && p.y <= size.height))
-      messages.push_back(warning(fmt::format("{}: `{}` is outside the picture of {}x{} pixels",
-                                             point.location, point.name, size.width, size.height)));
+      addWarning(messages, "{}: `{}` is outside the picture of {}x{} pixels", point.location,
+                 point.name, size.width, size.height);
   }
   return messages;
 }

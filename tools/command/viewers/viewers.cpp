@@ -24,7 +24,7 @@ Viewers::Viewers(const Settings& settings, std::function<void()> stop) {
   if (const auto port = settings.getIfGiven<uint64_t>("preview")) {
     auto server =
         std::make_unique<PreviewServer>(int(*port), !settings.has("frames"), std::move(stop));
-    messages_.push_back({Message::Kind::Note, fmt::format("preview at {}", server->address())});
+    addNote(messages_, "preview at {}", server->address());
     viewers_.push_back(std::move(server));
   }
 }

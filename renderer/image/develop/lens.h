@@ -1,11 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth of field after the fact: an image blurred by the circle of confusion of each pixel.
+// What a lens does to an image, after the fact: depth of field, by a blur with the circle of
+// confusion of each pixel; and vignetting, which darkens the corners.
 #pragma once
 
-#include "image/develop/vignette.h"
+#include <cmath>
+
 #include "image/image.h"
+#include "math/vec.h"
 
 namespace chromeball {
+
+// An image may be a part of the whole picture, whose middle the axis of the camera passes.
+struct ViewFrame {
+  int x = 0, y = 0;           // of the image's first pixel in the picture
+  int width = 0, height = 0;  // of the picture
+  double fov = 0;             // vertical, degrees; 0: unknown
+
+  // The size of a pixel in the middle of the picture, at unit distance along the axis.
+  double pixelSize() const { return 2 * std::tan(fov * kPiD / 360) / height; }
+  double pixelsPerDegree() const { return kPiD / 180 / pixelSize(); }
+};
+
+// Multiplies R, G and B by 1 - strength (1 - cos^4 phi), phi = angle to the camera's axis: the
+// natural vignetting of a thin lens at strength 1. Needs the frame's fov.
+void vignette(Image& image, double strength, const ViewFrame& frame);
+
+// Multiplies R, G and B by the channels of `falloff`, which is stretched over the picture
+// (bilinear). One or at least three channels.
+void multiplyFalloff(Image& image, const Image& falloff, const ViewFrame& frame);
 
 inline constexpr double kMaxConfusionRadius = 100;  // pixels
 
