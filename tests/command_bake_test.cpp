@@ -94,6 +94,22 @@ TEST_F(CommandBake, NamesSettingsThatItDoesNotHeed) {
       << result.error;
 }
 
+// A bake makes no image of the scene file's size, and needs no memory for it.
+TEST_F(CommandBake, TheImagesSizeTakesNoMemory) {
+  std::ofstream(folder_ / "s.toml") << "model = 'plate.gltf'\n[probe]\nfile = 'probe.exr'\n"
+                                       "[render]\nsize = [16384, 8000]\n";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"bake", "--to", "vertices"},
+        std::vector<std::string>{"basis", "--at", "vertices", "--basis", "sh:1"}}) {
+    std::vector<std::string> words = command;
+    words.insert(words.end(),
+                 {folder_ / "s.toml", "--samples", "4", "--memory", "2", "-o", folder_ / "a.glb"});
+    const CommandResult result = runCommand(words);
+    EXPECT_EQ(result.status, 0) << result.error;
+    EXPECT_EQ(result.error.find("of memory"), std::string::npos) << result.error;
+  }
+}
+
 TEST_F(CommandBake, OtherOutputs) {
   bake("ao.gltf", {"--what", "ambient-occlusion"});
   EXPECT_FALSE(load(folder_ / "ao.gltf").materials[0].unlit);

@@ -284,6 +284,19 @@ TEST_F(CommandCamera, OfAFileReplacesTheOpticsOfTheScenesCameraWithAWord) {
             std::string::npos);
 }
 
+// The files of a scene file's models are inputs too, also through links.
+TEST_F(CommandCamera, DoesNotOverwriteTheModelsOfAScene) {
+  std::mt19937 random(2);
+  const std::string list = write("points.csv", csv(observe(truth_, 8, {1, 1, 1}, 0, random)));
+  const std::string model = fileContents(path("model.gltf"));
+  std::filesystem::create_symlink(path("model.gltf"), path("link.png"));
+  expectError(
+      {"camera", "solve", write("scene.toml", "model = \"model.gltf\"\n"), path("plate.png"),
+       "--points", list, "-o", path("c.toml"), "--preview", path("link.png")},
+      "would overwrite the input");
+  EXPECT_EQ(fileContents(path("model.gltf")), model);
+}
+
 TEST_F(CommandCamera, ExifTellsTheFocalLengthWhereItIsNeeded) {
   const std::string jpeg = fileContents(std::string(kSourceDir) + "/tests/fuzz/seeds/image/a.jpg");
   std::ofstream(path("photo.jpg"), std::ios::binary)

@@ -238,7 +238,7 @@ TEST_F(SlowCommandCapture, ShiftedPhotographsAreRejected) {
   const Words files = {photograph("a.png", texture(0), 0.3, {exposureTime(1, 3)}),
                        photograph("b.png", texture(4), 0.1, {exposureTime(1, 9)})};
   expectError(joined({"probe", "merge", "-o", out_}, files),
-              "b.png: seems shifted by 4,0 pixels against ");
+              "take them as they are; see --unaligned");
   EXPECT_EQ(runCommand(joined({"probe", "merge", "-o", out_, "--unaligned"}, files)).status, 0);
 }
 
@@ -249,6 +249,7 @@ TEST_F(SlowCommandCapture, RealPhotographsOfDifferentSizesAreRejected) {
   const Words merge{"probe", "merge", *real / "10.JPG", *real / "40.JPG", *real / "160.JPG",
                     "-o",    out_};
   expectError(merge, "40.JPG: is 484 x 468, but ");
+  expectError(merge, "are resized; see --resize");
   const CommandResult resized =
       runCommand(joined(merge, {"--resize", "--exposures", "1/10,1/40,1/160", "--unaligned"}));
   EXPECT_EQ(resized.status, 0) << resized.error;

@@ -414,5 +414,13 @@ TEST_F(SlowCommandCompare, warnsThatItIgnoresThePlate) {
   EXPECT_NE(result.error.find("[composite] is ignored"), std::string::npos) << result.error;
 }
 
+TEST_F(SlowCommandCompare, HasNoPlateToScaleTheProbeBy) {
+  std::ofstream(folder_ / "scene.toml")
+      << "model = 'plate.gltf'\n[probe]\nfile = 'probe.exr'\nscale = 'plate'\n[composite]\n"
+         "plate = 'probe.exr'\nground = true\n";
+  expectError({"compare", folder_ / "scene.toml", "-o", dir()},
+              "scene.toml:4: scale = \"plate\" is of the [composite], which is ignored here");
+}
+
 }  // namespace
 }  // namespace chromeball::command_compare_test

@@ -102,6 +102,32 @@ TEST(GlossyTransfer, MetalsShowTheirMirrorDirection) {
   EXPECT_LT(opposite / count, 0.6);
 }
 
+// Lamps a thousand times as bright, under a probe as bright, are the same lighting: a compression
+// keeps the same of it.
+TEST(GlossyTransfer, TheUnitOfRadianceDoesNotDecideWhatIsKept) {
+  const auto compressed = [](float scale) {
+    Scene scene = sphereOf(lambert(Rgb(0.5f)));
+    Material lamp = lambert(Rgb(0));
+    lamp.emission = Rgb(scale * 3);
+    addSphere(scene, addMaterial(scene, lamp), {0, 3, 0}, 0.5f, 6, false);
+    const Estimated e(scene, {.samples = 16});
+    const GlossyTransfer glossy = e.glossy();
+    const ClusteredPca pca = clusteredPca(signalsOf(glossy), 2, 2);
+    return std::pair(pca.error, glossyFile(e.meshes, e.points, glossy, pca).tables[0].elements);
+  };
+  const auto [error, mean] = compressed(1);
+  const auto [brightError, bright] = compressed(1024);
+  EXPECT_EQ(brightError, error);
+  ASSERT_EQ(bright.size(), mean.size());
+  double own = 0;
+  for (size_t i = 0; i < mean.size(); ++i) {
+    const bool isOwn = (i + 1) % 10 == 0;
+    own += isOwn ? double(mean[i].x) : 0;
+    EXPECT_EQ(bright[i], (isOwn ? 1024.0f : 1.0f) * mean[i]);
+  }
+  EXPECT_GT(own, 0);
+}
+
 TEST(GlossyTransfer, SameBitsForAnyNumberOfThreads) {
   const Scene scene = sphereOf(lambert(Rgb(0.5f)));
   const Estimated e(scene, {.samples = 4});

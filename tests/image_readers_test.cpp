@@ -3,11 +3,13 @@
 // have, whole and truncated. OpenImageIO makes up the missing part of a JPEG; we refuse the file.
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <csetjmp>
 #include <cstdio>
 #include <fstream>
 #include <random>
 #include <stdexcept>
+#include <system_error>
 
 // needs size_t and FILE
 #include <jpeglib.h>
@@ -15,12 +17,25 @@
 
 #include "base/error.h"
 #include "image/io/decode_image.h"
+#include "image/io/image_format.h"
 #include "image/io/imageio_module.h"
 #include "image/io/read_image.h"
 #include "run_command.h"
 
 namespace chromeball::image_readers_test {
 namespace {
+
+// A file is at fault only for what its bytes say.
+TEST(ImageReaders, ScarceMemoryAndThreadsAreNoFaultOfTheFile) {
+  const auto read = [](const auto& error) {
+    readByLibrary("a.exr", [&] { throw error; });
+  };
+  EXPECT_THROW(read(std::bad_alloc()), RunError);
+  EXPECT_THROW(read(std::system_error(EAGAIN, std::generic_category())), RunError);
+  EXPECT_THROW(read(std::runtime_error("Resource temporarily unavailable")), RunError);
+  EXPECT_THROW(read(std::runtime_error("Cannot allocate memory")), RunError);
+  EXPECT_THROW(read(std::runtime_error("bad magic")), InputError);
+}
 
 using Bytes = std::vector<uint8_t>;
 

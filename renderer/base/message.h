@@ -12,7 +12,8 @@
 namespace chromeball {
 
 // The setting that resolves what an error or a message is about, by its name in the table of
-// settings (front/settings.h: "probe.scale"). The command prints the option that sets it.
+// settings (front/settings.h: "probe.scale"), or an option of the command that is not in it
+// ("resize"). The command prints the option.
 struct Remedy {
   std::string setting;
   std::string value;  // one that would do; empty: unknown

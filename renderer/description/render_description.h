@@ -96,6 +96,7 @@ struct RunDescription {
   bool resumes = false;
   bool isOfFrames = false;  // others follow, of the same files
   bool isWatched = false;   // snapshots may be taken; a Session sets it
+  bool makesImage = true;   // false: no image of the description's size is made, as in bakes
 };
 
 struct OutputDescription {

@@ -104,7 +104,10 @@ std::string settingsPage() {
   page += "\n## Lighting strategies\n\nSee [methods](methods.md#lighting-strategies).\n\n" +
           strategyTable();
   page +=
-      "\n## What does not go together\n\nOther features may be combined.\n\n"
+      "\n## What does not go together\n\nOther pairs of these features may be "
+      "combined. Settings that contradict each other (`--frames` and `--animation-time`, "
+      "reflectance "
+      "\"flat\" and lamps) are refused with the reason.\n\n"
       "| This | and | |\n| --- | --- | --- |\n";
   for (const Conflict& conflict : conflicts())
     page +=

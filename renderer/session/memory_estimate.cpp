@@ -73,6 +73,7 @@ double snapshotBytes(const RenderSettings& settings, bool isComposite) {
 }  // namespace
 
 double imageBytes(const RenderDescription& description) {
+  if (!description.run.makesImage) return 0;
   const RenderSettings& s = description.settings;
   const double composite = description.composite ? double(compositeBytesPerPixel(s.denoise)) : 0;
   const double snapshots =

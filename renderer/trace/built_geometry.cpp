@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/built_geometry.h"
 
+#include <new>
+
 #include <algorithm>
 #include <memory>
 #include <set>
@@ -28,7 +30,10 @@ using SceneInWork = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 }  // namespace
 
 BuiltGeometry::BuiltGeometry(const Scene& scene) : scene_(scene), device_(rtcNewDevice(nullptr)) {
-  if (!device_) throwRun("Embree cannot start: error {}", int(rtcGetDeviceError(nullptr)));
+  if (device_) return;
+  const RTCError error = rtcGetDeviceError(nullptr);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  throwRun("Embree cannot start: error {}", int(error));
 }
 
 BuiltGeometry::~BuiltGeometry() {

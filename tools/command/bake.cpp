@@ -100,7 +100,9 @@ RenderDescription plannedRender(const BakeOptions& a, std::optional<double>& dis
   if (isOcclusion) distance = takeDistance(scene, settings);
   dropUnheeded(scene, SceneCommand::Bake);
   if (isOcclusion) dropLight(scene, settings);
-  return planRender(std::move(scene), settings);
+  RenderDescription description = planRender(std::move(scene), settings);
+  description.run.makesImage = false;
+  return description;
 }
 
 BakeSettings bakeSettings(const BakeOptions& a, const RenderDescription& description,

@@ -26,6 +26,7 @@ RenderDescription transferJob(const SceneOptions& options) {
   RenderDescription description = basisJob(options, SceneCommand::BasisVertices);
   if (description.settings.maxDepth < 1)
     throwInput("--max-depth: should be 1 (direct light) or more for transfer");
+  description.run.makesImage = false;
   return description;
 }
 

@@ -224,6 +224,7 @@ void run(const CameraSolveArguments& a, const Command& command) {
   Messages messages;
   Image plate = readPlate(a.plate, &messages);
   const Scene scene = loadModels(a.model, messages);
+  checkDistinct({a.output, a.preview}, scene.files);
   const Solution solution = solve(a, {plate.width, plate.height});
   const std::vector<std::string> lines = reportLines(solution);
   std::vector<std::string> comments{

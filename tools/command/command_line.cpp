@@ -153,9 +153,10 @@ int run(int argc, char** argv) {
   return 0;
 }
 
-// Whether the command has an option --memory.
+// Whether --memory limits what the command needs. (relight has it for stages, which it reads in
+// parts, but not for models.)
 bool hasMemoryLimit(std::string_view command) {
-  constexpr std::array kCommands = {"render", "compare", "bake", "basis", "relight"};
+  constexpr std::array kCommands = {"render", "compare", "bake", "basis"};
   return std::ranges::find(kCommands, command) != kCommands.end();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "messages.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <ctime>
@@ -55,8 +56,11 @@ void print(const Messages& messages, bool quiet) {
 
 std::string inWords(const std::optional<Remedy>& remedy) {
   if (!remedy) return "";
-  return fmt::format("; {} {}", remedy->value.empty() ? "see" : "try",
-                     optionText(settingNamed(remedy->setting), remedy->value));
+  const auto& table = settingTable();
+  const auto setting = std::ranges::find(table, remedy->setting, &Setting::name);
+  return fmt::format(
+      "; {} {}", remedy->value.empty() ? "see" : "try",
+      setting == table.end() ? "--" + remedy->setting : optionText(*setting, remedy->value));
 }
 
 }  // namespace chromeball

@@ -119,7 +119,7 @@ void warnOf(const Report& report) {
     const ViewMatch& match = report.matches[i];
     const double inside = shareInside(p.circle, p.image.width, p.image.height);
     if (inside < 0.999)
-      warn("{}: {:.0f}% of its circle is outside the picture, and blind", p.file,
+      warn("{}: {:.2g}% of its circle is outside the picture, and blind", p.file,
            100 * (1 - inside));
     if (p.found && p.found->standardError > kLargestDoubt)
       warn(

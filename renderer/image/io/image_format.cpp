@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/image_format.h"
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "base/error.h"
@@ -38,6 +41,13 @@ ImageFormat imageFormat(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
   return imageFormat(std::span(bytes).first(size_t(stream.gcount())));
+}
+
+bool isOfResources(const std::exception& error) {
+  if (dynamic_cast<const std::system_error*>(&error)) return true;
+  return std::ranges::any_of(std::array{EAGAIN, ENOMEM}, [&](int code) {  // of OpenEXR
+    return std::string_view(error.what()) == std::generic_category().message(code);
+  });
 }
 
 // Text before the path is dropped, since our message starts with the path, unless the path comes

@@ -34,7 +34,10 @@ inline uint64_t bigEndian(std::span<const uint8_t> bytes) {
 // Throws a library's message about `path` as an InputError of one line.
 [[noreturn]] void throwUnreadable(const std::filesystem::path& path, std::string reason);
 
-// Calls read(), which calls a library.
+// Whether the system has refused a thread or memory: no fault of the file.
+bool isOfResources(const std::exception& error);
+
+// Calls read(), which calls a library. Throws RunError if memory or threads are short.
 template <class Read>
 auto readByLibrary(const std::filesystem::path& path, const Read& read) {
   try {
@@ -45,9 +48,10 @@ auto readByLibrary(const std::filesystem::path& path, const Read& read) {
     throw;
   } catch (const Interrupted&) {
     throw;
-  } catch (const std::bad_alloc&) {
-    throwUnreadable(path, "its header claims more texels than fit into memory");
+  } catch (const std::bad_alloc&) {  // the texels were within the limit of memory
+    throwRun("{}: out of memory while it is read", path.string());
   } catch (const std::exception& error) {
+    if (isOfResources(error)) throwRun("{}: while it is read: {}", path.string(), error.what());
     throwUnreadable(path, error.what());
   }
 }

@@ -160,10 +160,11 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
     } else {
       const Image& first = result.levels.front();
       if (!resizes && (image.width != first.width || image.height != first.height))
-        throwInput(
-            "{}: is {} x {}, but {} is {} x {}; photographs of a series have one size, or, "
-            "for crops of a ball, are resized",
-            file, image.width, image.height, files.front(), first.width, first.height);
+        throw InputError(
+            fmt::format("{}: is {} x {}, but {} is {} x {}; photographs of a series have one size, "
+                        "or, for crops of a ball, are resized",
+                        file, image.width, image.height, files.front(), first.width, first.height),
+            Remedy{"resize", {}});
       if (bits != result.bits)
         throwInput("{}: has {}, but {} has {}; photographs of a series are of one kind", file,
                    kindOf(bits), files.front(), kindOf(result.bits));

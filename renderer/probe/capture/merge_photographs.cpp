@@ -102,10 +102,11 @@ void checkShifts(std::span<const Exposure> exposures) {
   for (size_t i = 0; i + 1 < order.size(); ++i) {
     const Shift shift = findShift(order[i]->levels, order[i + 1]->levels);
     if (shift.isCertain())
-      throwInput(
-          "{}: seems shifted by {},{} pixels against {}; align the photographs first, or "
-          "take them as they are (unaligned)",
-          order[i + 1]->name, shift.dx, shift.dy, order[i]->name);
+      throw InputError(
+          fmt::format("{}: seems shifted by {},{} pixels against {}; align the photographs first, "
+                      "or take them as they are",
+                      order[i + 1]->name, shift.dx, shift.dy, order[i]->name),
+          Remedy{"unaligned", {}});
   }
 }
 

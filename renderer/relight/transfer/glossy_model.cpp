@@ -56,14 +56,28 @@ constexpr float kBuried = -1;
 
 std::string vectorName(size_t m) { return fmt::format("vector{}", m); }
 
+// The scale of the scene's own light in the signals.
+float ownScale(const VertexTransfer& matrices) {
+  const size_t columns = matrices.count / ViewGrid::kCount;
+  double own = 0, functions = 0;  // sums of squares
+  for (size_t i = 0; i < matrices.values.size(); ++i) {
+    const dvec3 value(matrices.values[i]);
+    ((i + 1) % columns == 0 ? own : functions) += glm::dot(value, value);
+  }
+  return powerOfTwoNear(own > 0 ? std::sqrt(functions / double(columns - 1) / own) : 1);
+}
+
 // A table of the clusters: rows[c], or zeros where that is empty.
 NamedArray tableOf(const std::string& name, const std::vector<std::span<const float>>& rows,
-                   size_t count) {
+                   const VertexTransfer& matrices, float scaleOfOwn) {
+  const size_t columns = matrices.count / ViewGrid::kCount;
   NamedArray table{name, {}};
   for (const std::span<const float> row : rows)
-    for (size_t i = 0; i < count; ++i)
-      table.elements.push_back(row.empty() ? vec3(0)
-                                           : vec3(row[3 * i], row[3 * i + 1], row[3 * i + 2]));
+    for (size_t i = 0; i < matrices.count; ++i) {
+      vec3 value(0);
+      if (!row.empty()) value = {row[3 * i], row[3 * i + 1], row[3 * i + 2]};
+      table.elements.push_back((i + 1) % columns == 0 ? value / scaleOfOwn : value);
+    }
   return table;
 }
 
@@ -131,11 +145,17 @@ class LitClusters {
 
 Signals signalsOf(const GlossyTransfer& transfer) {
   const VertexTransfer& matrices = transfer.matrices;
+  const size_t columns = matrices.count / ViewGrid::kCount;
+  const float scale = ownScale(matrices);
   Signals signals{3 * matrices.count, {}};
-  for (size_t i = 0; i < matrices.isBuried.size(); ++i)
-    if (!matrices.isBuried[i])
-      for (const Rgb& value : matrices.of(i))
-        signals.values.insert(signals.values.end(), {value.x, value.y, value.z});
+  for (size_t i = 0; i < matrices.isBuried.size(); ++i) {
+    if (matrices.isBuried[i]) continue;
+    const std::span<const Rgb> values = matrices.of(i);
+    for (size_t k = 0; k < values.size(); ++k) {
+      const Rgb value = (k + 1) % columns == 0 ? scale * values[k] : values[k];
+      signals.values.insert(signals.values.end(), {value.x, value.y, value.z});
+    }
+  }
   return signals;
 }
 
@@ -160,6 +180,7 @@ GlossyFile glossyFile(const std::vector<PlacedMesh>& meshes, const std::vector<B
       signal += !isBuried;
     }
   }
+  const float scale = ownScale(transfer.matrices);
   for (size_t t = 0; t <= most; ++t) {
     std::vector<std::span<const float>> rows;
     for (const auto& [mean, vectors] : pca.clusters)
@@ -167,7 +188,7 @@ GlossyFile glossyFile(const std::vector<PlacedMesh>& meshes, const std::vector<B
                      : t <= vectors.count() ? vectors[t - 1]
                                             : std::span<const float>());
     file.tables.push_back(
-        tableOf(t == 0 ? kMean : vectorName(t - 1), rows, transfer.matrices.count));
+        tableOf(t == 0 ? kMean : vectorName(t - 1), rows, transfer.matrices, scale));
   }
   return file;
 }

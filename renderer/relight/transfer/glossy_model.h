@@ -74,7 +74,9 @@ GlossyTransfer estimateGlossyTransfer(const World& world, const std::vector<Plac
                                       const std::vector<BakePoint>& points, const LightBasis& basis,
                                       const TransferSettings& settings, const Progress& progress);
 
-// The matrices, one signal each, of the points that are not inside a body, in their order.
+// The matrices, one signal each, of the points that are not inside a body, in their order. The
+// scene's own light is scaled, by a power of two, to be as strong as the mean function: else the
+// unit of radiance would decide what a compression keeps.
 Signals signalsOf(const GlossyTransfer& transfer);
 
 struct GlossyFile {

@@ -38,7 +38,8 @@ def madsen_laursen(run):
         "lights are needed for 5%, of the optimised ones 5 to 6. The sky is a probe without its lower half.",
         ["chromeball lights-error PROBE --methods median-cut,irradiance-fit --counts 2,4,8,16,32,64,128",
          "chromeball lights-error PROBE --methods median-cut-centre --recursion 1,2,3,4,5,6,7"],
-        "Mean / maximum error of the irradiance over 20480 normals, in percent of its mean. The columns are numbers of "
+        "Mean / maximum error of the irradiance over 20480 normals, in percent of its mean. Qwantani, "
+        "whose lower half is no light, is with `--probe-mask below-horizon`. The columns are numbers of "
         "lights; in Qwantani the last three of `-centre` and `-flat` have 28, 48 and 86, as regions of a single texel in "
         "the sun cannot be cut:\n\n"
         + table(["probe, method", *COUNTS], rows) + "\n\n" + ".\n".join(notes) + ".",

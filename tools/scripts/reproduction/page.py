@@ -51,12 +51,12 @@ here, and pictures are only of probes that may be copied: those of Poly Haven an
 
 WITHOUT = """## Figures without a row
 
-- 9.11, a panorama of two rows of nine photographs: `probe stitch` makes a probe of such tiles ([capture](../capture.md)),
+- 9.11, a panorama of two rows of nine photographs: `probe stitch` makes a probe of such tiles ([stitching](../methods.md#stitching-tiles)),
   and tests prove it on tiles that the program renders; the photographs are not published.
 - 9.12 and 9.42 show cameras and lamps; 9.20 is a drawing of rays, which [the path tracer](../architecture.md) follows.
 - 9.13, the exposures of a sky through a fisheye lens: `probe merge` and `probe assemble` do what the text describes, and
   are proved on exposures that the program renders; the photographs are not published.
-- The subjects of 9.21 (a pot), 9.31 to 9.34 (statues), 9.43 (a face) and 9.46 (a bust) belong to others; the rows
+- The subjects of 9.21 (a pot), 9.31 (a statue), 9.34 (a kitchen), 9.43 (a face) and 9.46 (a bust, an armadillo, teapots) belong to others; the rows
   have scenes of this project in their place."""
 
 
