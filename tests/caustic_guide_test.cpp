@@ -332,7 +332,7 @@ TEST(CausticGuide, TheNumberOfThreadsChangesNothing) {
   for (const size_t threads : {1, 2, 5}) {
     const ThreadLimit limit(threads);
     const RenderResult r =
-        renderScene(scene, above(), lamp(), "importance", guidedRender(50, 40, 32, Guiding::Auto));
+        renderScene(scene, above(), lamp(), "importance", guidedRender(70, 56, 32, Guiding::Auto));
     EXPECT_GT(r.causticFraction, 0);
     images.push_back(r.film.mean());
   }
