@@ -105,10 +105,9 @@ void readCameraFile(const std::string& path, SceneFile& scene) {
     if (const Entry e = camera[key])
       failAt(e.location(), "a camera's own file has `position` and `look_at`, and no `{}`", key);
   if (scene.optics)
-    scene.warnings.push_back(
-        fmt::format("{}: `principal_point` and `distortion` go with the scene's own camera, which "
-                    "{} replaces",
-                    scene.origins.of("camera.optics"), path));
+    scene.warnings.push_back(fmt::format(
+        "{}: `principal_point` and `distortion` go with the scene's own camera, which {} replaces",
+        scene.origins.of("camera.optics"), path));
   scene.camera.reset();
   scene.optics.reset();
   readPlace(camera, scene);

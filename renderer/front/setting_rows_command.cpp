@@ -23,16 +23,14 @@ std::vector<Setting> commandRows() {
            .argument = "NODE,...",
            .type = Name,
            .absent = "a plain render",
-           .help =
-               "Renders all other nodes, and the shadows and light that they cast on these, as an "
-               "image with alpha to be laid over a photograph, with the layers objects, alpha, "
-               "difference and ratio of the .exr. `ground`: a level plane at height 0, unless a "
-               "node is called so. As [composite] with mode = \"shadow-catcher\"."},
+           .help = "Renders all other nodes, and the shadows and light that they cast on these, as "
+                   "an image with alpha to be laid over a photograph, with the layers objects, "
+                   "alpha, difference and ratio of the .exr. `ground`: a level plane at height 0, "
+                   "unless a node is called so. As [composite] with mode = \"shadow-catcher\"."},
           {.option = "two-pass",
            .type = Flag,
-           .help =
-               "Renders a composite as the difference of two renders: slow, the reference for the "
-               "single pass."},
+           .help = "Renders a composite as the difference of two renders: slow, the reference for "
+                   "the single pass."},
           {.option = "crop",
            .argument = "X,Y,W,H",
            .type = Name,
@@ -43,26 +41,23 @@ std::vector<Setting> commandRows() {
            .argument = "K/N",
            .type = Name,
            .absent = "all samples",
-           .help =
-               "Takes the K-th of N equal shares of each pixel's samples; `chromeball merge` puts "
-               "the N images together. The .exr has what it needs."},
+           .help = "Takes the K-th of N equal shares of each pixel's samples; `chromeball merge` "
+                   "puts the N images together. The .exr has what it needs."},
           {.option = "orbit",
            .argument = "DEGREES",
            .type = Number,
            .range = {.min = -36000, .max = 36000},
            .absent = "no turn",
-           .help =
-               "Turns the camera around the model, counter-clockwise seen from above. With "
-               "--frames: by equal steps from frame to frame, as many as there are frames, so that "
-               "the last one ends a step before the whole turn."},
+           .help = "Turns the camera around the model, counter-clockwise seen from above. With "
+                   "--frames: by equal steps from frame to frame, as many as there are frames, so "
+                   "that the last one ends a step before the whole turn."},
           {.option = "orbit-step",
            .argument = "DEGREES",
            .type = Number,
            .range = {.min = -36000, .max = 36000},
            .absent = "0; with --frames that of --orbit",
-           .help =
-               "With --shutter: how far the camera turns around the model from this frame to the "
-               "next."},
+           .help = "With --shutter: how far the camera turns around the model from this frame to "
+                   "the next."},
       });
   rows.insert(
       rows.end(),
@@ -97,10 +92,9 @@ std::vector<Setting> commandRows() {
            .range = kPositive,
            .unit = "GB",
            .absent = "all textures are in memory",
-           .help =
-               "Memory for textures; less than 0.0105 counts as that. If they need more, they go "
-               "to a temporary "
-               "file in $TMPDIR, of which so much is kept in memory. It does not change the image.",
+           .help = "Memory for textures; less than 0.0105 counts as that. If they need more, they "
+                   "go to a temporary file in $TMPDIR, of which so much is kept in memory. It does "
+                   "not change the image.",
            .effect = Effect::Run},
           {.option = "threads",
            .type = Integer,
@@ -121,9 +115,8 @@ std::vector<Setting> commandRows() {
            .argument = "A:B[:STEP]",
            .type = Name,
            .absent = "one image",
-           .help =
-               "Renders the frames A to B of an animation. The last row of # in the names of files "
-               "becomes a frame's number. A frame is left alone if all its files exist."},
+           .help = "Renders the frames A to B of an animation. The last row of # in the names of "
+                   "files becomes a frame's number. A frame is left alone if all its files exist."},
           {.option = "frame",
            .type = Integer,
            .absent = "all",
@@ -140,9 +133,8 @@ std::vector<Setting> commandRows() {
            .help = "Renders also the frames whose images exist."},
           {.option = "seed-per-frame",
            .type = Flag,
-           .help =
-               "Adds a frame's number to the seed. Without it the noise of all frames is alike: "
-               "it stays where nothing moves, and denoised frames flicker less."},
+           .help = "Adds a frame's number to the seed. Without it the noise of all frames is "
+                   "alike: it stays where nothing moves, and denoised frames flicker less."},
           {.option = "probe-sequence",
            .argument = "PROBE.####.exr",
            .type = Name,
@@ -161,16 +153,14 @@ std::vector<Setting> commandRows() {
            .type = Integer,
            .range = {.min = 0, .max = 65535},
            .absent = "none",
-           .help =
-               "Serves a page on this machine that shows the image while it grows. 0 or no number: "
-               "any free port."},
+           .help = "Serves a page on this machine that shows the image while it grows. 0 or no "
+                   "number: any free port."},
           {.option = "display",
            .argument = "tev[=HOST:PORT]",
            .type = Name,
            .absent = "none",
-           .help =
-               "Sends the image while it grows to the image viewer tev, at 127.0.0.1:14158 if no "
-               "address is given."},
+           .help = "Sends the image while it grows to the image viewer tev, at 127.0.0.1:14158 if "
+                   "no address is given."},
           {.option = "cache",
            .argument = "FILE",
            .type = Name,

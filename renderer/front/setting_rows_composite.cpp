@@ -18,9 +18,8 @@ std::vector<Setting> compositeRows() {
                "other nodes of the model are synthetic objects."},
       {.key = "ground",
        .type = Flag,
-       .help =
-           "Adds the ground to the local scene: a level plane, as far as the camera sees it and "
-           "the objects matter."},
+       .help = "Adds the ground to the local scene: a level plane, as far as the camera sees it "
+               "and the objects matter."},
       {.key = "ground_height",
        .type = Number,
        .unit = "metres",
@@ -38,16 +37,15 @@ std::vector<Setting> compositeRows() {
        .form = "two numbers, [least, most]",
        .range = {.min = 0.001, .max = 1},
        .absent = "0.1, 0.5: asphalt to dry sand",
-       .help = "Between what the ground's reflectance may be: the uncertainty of "
-               "`[probe] scale = \"plate\"`."},
+       .help = "Between what the ground's reflectance may be: the uncertainty of `[probe] scale = "
+               "\"plate\"`."},
       {.key = "mode",
        .type = Choice,
        .fallback = "difference",
        .choices = {"difference", "ratio", "shadow-catcher"},
-       .help =
-           "alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj), or plate x L_obj / L_noobj; or "
-           "the objects and their shadows, without a plate, as a premultiplied image with alpha "
-           "to be laid over one."},
+       .help = "alpha L_obj + (1 - alpha) (plate + L_obj - L_noobj), or plate x L_obj / L_noobj; "
+               "or the objects and their shadows, without a plate, as a premultiplied image with "
+               "alpha to be laid over one."},
       {.key = "reflectance",
        .type = Choice,
        .absent = "model; with `ground` flat, or plate if the local scene has more or other lights",
@@ -58,9 +56,8 @@ std::vector<Setting> compositeRows() {
        .type = Integer,
        .range = {.min = 1, .max = 20},
        .fallback = "2",
-       .help =
-           "Iterations of `reflectance = \"plate\"`; one suffices if no part of the local scene "
-           "sees another."},
+       .help = "Iterations of `reflectance = \"plate\"`; one suffices if no part of the local "
+               "scene sees another."},
       {.key = "specular",
        .type = Number,
        .range = {.min = 0, .max = 1},

@@ -38,9 +38,8 @@ std::vector<Setting> lightRows() {
       {.key = "name",
        .type = Name,
        .absent = "sun, or light",
-       .help =
-           "Name of the lamp, for `local_scene` and light groups (there with _ for dots, commas, = "
-           "and spaces); those of a list get numbers: NAME_0."},
+       .help = "Name of the lamp, for `local_scene` and light groups (there with _ for dots, "
+               "commas, = and spaces); those of a list get numbers: NAME_0."},
       pointRow("position", "required for a point, spot or disc", "Position of the lamp."),
       {.key = "direction",
        .type = Compound,
@@ -104,9 +103,8 @@ std::vector<Setting> sourceRows() {
        .range = kNotNegative,
        .unit = "metres",
        .fallback = "0",
-       .help =
-           "Distance from the wall, as RADIANCE needs it. Without effect: here walls do not hide "
-           "the sources on them."},
+       .help = "Distance from the wall, as RADIANCE needs it. Without effect: here walls do not "
+               "hide the sources on them."},
   };
 }
 

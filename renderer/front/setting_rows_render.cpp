@@ -36,9 +36,8 @@ std::vector<Setting> renderRows() {
            .type = Integer,
            .range = {.min = 1, .max = kMaxSamples},
            .fallback = std::to_string(usual.samples),
-           .help =
-               "Samples per pixel; with a limit on time or noise, their maximum (then unlimited by "
-               "default)."},
+           .help = "Samples per pixel; with a limit on time or noise, their maximum (then "
+                   "unlimited by default)."},
           {.key = "time",
            .argument = "SECONDS",
            .type = Number,
@@ -78,10 +77,9 @@ std::vector<Setting> renderRows() {
            .type = Choice,
            .fallback = "refract",
            .choices = {"refract", "straight"},
-           .help =
-               "Light that reaches surfaces through smooth bodies of glass is refracted (refract), "
-               "or passes straight, tinted by the glass (straight, biased): no caustics, less "
-               "noise."},
+           .help = "Light that reaches surfaces through smooth bodies of glass is refracted "
+                   "(refract), or passes straight, tinted by the glass (straight, biased): no "
+                   "caustics, less noise."},
           {.key = "denoise",
            .type = Flag,
            .help = "Removes noise (biased). An .exr also has the noisy image, `noisy`, and the "
@@ -90,12 +88,11 @@ std::vector<Setting> renderRows() {
            .type = Choice,
            .fallback = std::string(kIntegratorNames[size_t(usual.integrator)]),
            .choices = {kIntegratorNames.begin(), kIntegratorNames.end()},
-           .help =
-               "path: all light. Approximations: direct, paths of one bounce; environment-map, the "
-               "probe prefiltered by normal and mirror direction, without shadows and "
-               "interreflection (rough metal is off by 5% to 55% under most real probes); "
-               "ambient-occlusion, the same with `ao` and "
-               "`reflection_occlusion`. With the strategy suns these cast the shadows of suns."},
+           .help = "path: all light. Approximations: direct, paths of one bounce; environment-map, "
+                   "the probe prefiltered by normal and mirror direction, without shadows and "
+                   "interreflection (rough metal is off by 5% to 55% under most real probes); "
+                   "ambient-occlusion, the same with `ao` and `reflection_occlusion`. With the "
+                   "strategy suns these cast the shadows of suns."},
           {.key = "ao",
            .type = Flag,
            .help = "With environment-map: ambient occlusion darkens diffuse light."},
@@ -120,47 +117,44 @@ std::vector<Setting> renderRows() {
            .type = Number,
            .range = {.min = 0, .max = 1, .excludesMin = true},
            .absent = "all light is path traced",
-           .help =
-               "Interpolates the light that diffuse surfaces in view receive from other surfaces "
-               "(biased): 0.2 is usual, smaller is slower and more accurate."},
+           .help = "Interpolates the light that diffuse surfaces in view receive from other "
+                   "surfaces (biased): 0.2 is usual, smaller is slower and more accurate."},
       });
-  rows.insert(
-      rows.end(),
-      {
-          {.key = "max_depth",
-           .type = Integer,
-           .range = {.min = 0, .max = kMaxDepth},
-           .fallback = std::to_string(usual.maxDepth),
-           .help = "Maximum number of bounces: 0 emission only, 1 direct light, ..."},
-          {.key = "max_diffuse_depth",
-           .type = Integer,
-           .range = {.min = 0, .max = kMaxDepth},
-           .absent = "max_depth",
-           .help = "Maximum number of bounces whose direction a diffuse lobe chose."},
-          {.key = "max_specular_depth",
-           .type = Integer,
-           .range = {.min = 0, .max = kMaxDepth},
-           .absent = "max_depth",
-           .help = "Maximum number of bounces whose direction a specular lobe chose."},
-          {.key = "max_transmission_depth",
-           .type = Integer,
-           .range = {.min = 0, .max = kMaxDepth},
-           .fallback = std::to_string(usual.maxTransmissionDepth),
-           .help = "Maximum number of bounces in and on bodies of glass, which are not counted as "
-                   "other bounces."},
-          {.key = "single_sided",
-           .type = Choice,
-           .fallback = "camera",
-           .choices = {"camera", "light", "off"},
-           .help =
-               "Backs of single-sided surfaces are invisible to the camera and mirrors (camera), "
-               "pass all light (light), or are like fronts (off)."},
-          {.key = "seed",
-           .type = Integer,
-           .range = {.min = 0},
-           .fallback = "0",
-           .help = "Another seed gives another independent image."},
-      });
+  rows.insert(rows.end(),
+              {
+                  {.key = "max_depth",
+                   .type = Integer,
+                   .range = {.min = 0, .max = kMaxDepth},
+                   .fallback = std::to_string(usual.maxDepth),
+                   .help = "Maximum number of bounces: 0 emission only, 1 direct light, ..."},
+                  {.key = "max_diffuse_depth",
+                   .type = Integer,
+                   .range = {.min = 0, .max = kMaxDepth},
+                   .absent = "max_depth",
+                   .help = "Maximum number of bounces whose direction a diffuse lobe chose."},
+                  {.key = "max_specular_depth",
+                   .type = Integer,
+                   .range = {.min = 0, .max = kMaxDepth},
+                   .absent = "max_depth",
+                   .help = "Maximum number of bounces whose direction a specular lobe chose."},
+                  {.key = "max_transmission_depth",
+                   .type = Integer,
+                   .range = {.min = 0, .max = kMaxDepth},
+                   .fallback = std::to_string(usual.maxTransmissionDepth),
+                   .help = "Maximum number of bounces in and on bodies of glass, which are not "
+                           "counted as other bounces."},
+                  {.key = "single_sided",
+                   .type = Choice,
+                   .fallback = "camera",
+                   .choices = {"camera", "light", "off"},
+                   .help = "Backs of single-sided surfaces are invisible to the camera and mirrors "
+                           "(camera), pass all light (light), or are like fronts (off)."},
+                  {.key = "seed",
+                   .type = Integer,
+                   .range = {.min = 0},
+                   .fallback = "0",
+                   .help = "Another seed gives another independent image."},
+              });
   return rows;
 }
 
@@ -191,9 +185,9 @@ std::vector<Setting> outputRows() {
        .argument = "\"NAME=VALUE ...\"",
        .type = Name,
        .absent = "as rendered",
-       .help = "Optics of a .png, before tone mapping, as the options of `image "
-               "develop`: \"bloom=.75:1,.15:8,.07:32,.03:128 vignette=.4\"; also clip, "
-               "depth-blur, motion, glare. An .exr stays as rendered.",
+       .help = "Optics of a .png, before tone mapping, as the options of `image develop`: "
+               "\"bloom=.75:1,.15:8,.07:32,.03:128 vignette=.4\"; also clip, depth-blur, motion, "
+               "glare. An .exr stays as rendered.",
        .effect = Effect::Display,
        .renderOnly = true},
   };

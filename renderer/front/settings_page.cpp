@@ -94,27 +94,25 @@ std::string settingsPage() {
         fmt::format("\n## {}\n\n{}\n\n",
                     hasKeys ? fmt::format("`{}`", section.heading) : std::string(section.heading),
                     section.about);
-    page += hasKeys ? "| Key | Type | Range | Unit | Default | Option | Meaning |\n"
-                      "| --- | --- | --- | --- | --- | --- | --- |\n"
-                    : "| Option | Type | Range | Unit | Default | Meaning |\n"
-                      "| --- | --- | --- | --- | --- | --- |\n";
+    page += hasKeys ? "| Key | Type | Range | Unit | Default | Option | Meaning |\n| --- | --- | "
+                      "--- | --- | --- | --- | --- |\n"
+                    : "| Option | Type | Range | Unit | Default | Meaning |\n| --- | --- | --- | "
+                      "--- | --- | --- |\n";
     for (const Setting& setting : settingTable())
       if (setting.section == section.name) page += row(setting, hasKeys);
   }
   page += "\n## Lighting strategies\n\nSee [methods](methods.md#lighting-strategies).\n\n" +
           strategyTable();
   page +=
-      "\n## What does not go together\n\nOther pairs of these features may be "
-      "combined. Settings that contradict each other (`--frames` and `--animation-time`, "
-      "reflectance "
-      "\"flat\" and lamps) are refused with the reason.\n\n"
-      "| This | and | |\n| --- | --- | --- |\n";
+      "\n## What does not go together\n\nOther pairs of these features may be combined. Settings "
+      "that contradict each other (`--frames` and `--animation-time`, reflectance \"flat\" and "
+      "lamps) are refused with the reason.\n\n| This | and | |\n| --- | --- | --- |\n";
   for (const Conflict& conflict : conflicts())
     page +=
         fmt::format("| {} | {} | {} |\n", conflict.feature.name, conflict.with.name, conflict.why);
   page +=
-      "\n## What has no effect alone\n\nA warning names a setting that is given in vain.\n\n"
-      "| Setting | has no effect without |\n| --- | --- |\n";
+      "\n## What has no effect alone\n\nA warning names a setting that is given in vain.\n\n| "
+      "Setting | has no effect without |\n| --- | --- |\n";
   for (const Dependence& dependence : dependences())
     page += fmt::format("| `{}` | {} |\n", dependence.setting, dependence.needs);
   return page;

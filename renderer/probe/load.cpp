@@ -164,16 +164,14 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path) {
   std::vector<std::string> lines;
   if (!probe.certain)
-    lines.push_back(
-        fmt::format("{}: {} x {} texels detected as {} because {}; give the mapping if this is "
-                    "wrong",
-                    path.string(), probe.fileWidth, probe.fileHeight, mappingName(probe.mapping),
-                    probe.reason));
+    lines.push_back(fmt::format(
+        "{}: {} x {} texels detected as {} because {}; give the mapping if this is wrong",
+        path.string(), probe.fileWidth, probe.fileHeight, mappingName(probe.mapping),
+        probe.reason));
   if (probe.turned)
-    lines.push_back(
-        fmt::format("{}: turned by 180 degrees because its `envmap` attribute puts +Z in the "
-                    "centre",
-                    path.string()));
+    lines.push_back(fmt::format(
+        "{}: turned by 180 degrees because its `envmap` attribute puts +Z in the centre",
+        path.string()));
   if (!probe.detected && probe.mapping == Mapping::LatLong && probe.fileWidth == probe.fileHeight)
     lines.push_back(fmt::format(
         "{}: is square but read as a lat-long map (2:1); is it an angular map or a mirror ball?",
@@ -200,15 +198,14 @@ std::vector<std::string> lightWarnings(const LoadedProbe& probe,
   if (probe.maximum == 0) return {fmt::format("{}: is black: it lights nothing", path.string())};
   if (probe.hasIntegerTexels)
     return {
-        fmt::format("{}: has integer texels, so radiance above 1 was clipped when it was made; "
-                    "use an .exr or .hdr",
+        fmt::format("{}: has integer texels, so radiance above 1 was clipped when it was made; use "
+                    "an .exr or .hdr",
                     path.string())};
   const bool atLimit = probe.maximum == 1 || probe.maximum == kMaxHalf;
   if (atLimit && probe.fractionAtMaximum >= kMinClipped && probe.fractionAtMaximum <= kMaxClipped)
-    return {
-        fmt::format("{}: {:.2g}% of its texels have the maximum value, {}: brighter light was "
-                    "clipped",
-                    path.string(), 100 * probe.fractionAtMaximum, probe.maximum)};
+    return {fmt::format(
+        "{}: {:.2g}% of its texels have the maximum value, {}: brighter light was clipped",
+        path.string(), 100 * probe.fractionAtMaximum, probe.maximum)};
   return {};
 }
 
@@ -222,8 +219,8 @@ DetectedMapping detectMapping(const Image& image) {
   if (h >= kMin && w == h)
     return isBlackOutside(image, Mapping::AngularMap)
                ? DetectedMapping{Mapping::AngularMap,
-                                 "it is square and black outside the disc (so "
-                                 "may be a mirror ball, which only its maker can tell)",
+                                 "it is square and black outside the disc (so may be a mirror "
+                                 "ball, which only its maker can tell)",
                                  true}
                : DetectedMapping{Mapping::MirrorBall, "it is square and not black outside the disc",
                                  false};

@@ -104,12 +104,11 @@ void addSources(const LoadedScene& loaded, Messages& messages) {
   std::vector<PolygonSource> sources;
   for (const PolygonLight& light : loaded.sources->lights) sources.push_back(light.source);
   if (const double change = unevenness(sources); change > kMaxUnevenness)
-    addWarning(
-        messages,
-        "[[source]]: the probe is uneven in the polygons; one constant radiance for each changes "
-        "irradiance by up to {:.2g}% of that on surfaces facing them; more and smaller polygons "
-        "change it less",
-        100 * change);
+    addWarning(messages,
+               "[[source]]: the probe is uneven in the polygons; one constant radiance for each "
+               "changes irradiance by up to {:.2g}% of that on surfaces facing them; more and "
+               "smaller polygons change it less",
+               100 * change);
 }
 
 void addProbe(const std::string& path, const LoadedProbe& probe, Messages& messages) {
@@ -132,13 +131,12 @@ void addPlateScale(const CompositeEntry& composite, const PlateScale& found, Mes
   const Rgb &scale = found.scale, &assumed = composite.groundReflectance;
   const double grey = luminance(glm::dvec3(assumed));
   const vec2& range = composite.groundReflectanceRange;
-  addNote(
-      messages,
-      "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground with reflectance "
-      "{:.3g}; they scatter by {:.2g}%; reflectances of {:.3g} to {:.3g} make it {:.3g} to {:.3g} "
-      "times that",
-      scale.x, scale.y, scale.z, found.pixels, grey, 100 * found.scatter, range.x, range.y,
-      grey / double(range.y), grey / double(range.x));
+  addNote(messages,
+          "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground with reflectance "
+          "{:.3g}; they scatter by {:.2g}%; reflectances of {:.3g} to {:.3g} make it {:.3g} to "
+          "{:.3g} times that",
+          scale.x, scale.y, scale.z, found.pixels, grey, 100 * found.scatter, range.x, range.y,
+          grey / double(range.y), grey / double(range.x));
 }
 
 }  // namespace
@@ -156,15 +154,13 @@ Messages loadMessages(const LoadedScene& loaded) {
   warn(loaded.modelWarnings);
   for (const std::string& line : scene.notes) addNote(messages, "{}", line);
   if (!scene.lights.empty() && hasBodies(scene))
-    addWarning(
-        messages,
-        "punctual lights do not pass bodies of glass, which refract their light: surfaces behind "
-        "are in full shadow; light from emissive surfaces passes");
+    addWarning(messages,
+               "punctual lights do not pass bodies of glass, which refract their light: surfaces "
+               "behind are in full shadow; light from emissive surfaces passes");
   if (receivesNoShadow(loaded))
-    addWarning(
-        messages,
-        "the local scene is unlit (KHR_materials_unlit): it shows neither shadows nor light of the "
-        "objects; give it a material that is lit");
+    addWarning(messages,
+               "the local scene is unlit (KHR_materials_unlit): it shows neither shadows nor light "
+               "of the objects; give it a material that is lit");
   warn(idleSettings(description, contentsOf(loaded)));
   addMemory(loaded, messages);
   if (const auto& probe = description.probe.file)

@@ -46,6 +46,13 @@ std::optional<DepthLimit> PathTracer::reachedLimit(const PathState& state, const
   return {};
 }
 
+bool PathTracer::limitKinds(const PathState& state, Bsdf& bsdf) const {
+  const KeptLobes kept{state.diffuse < settings_.maxDiffuseDepth,
+                       state.specular < settings_.maxSpecularDepth};
+  if (!kept.diffuse || !kept.specular) bsdf.keepOnly(kept);
+  return kept.diffuse || kept.specular;
+}
+
 bool PathTracer::isFollowed(DepthLimit limit, const PathContext& context) {
   constexpr uint64_t kPurpose = 0x637574;  // separate random stream
   return hash(context.sampler.sampleKey(), kPurpose) % intervalOf(limit) == 0;

@@ -1,10 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer: the light that a ray finds if it hits nothing.
+// PathTracer: whether a ray escapes, and the light that it finds then.
+#include <algorithm>
+
+#include "trace/accel.h"
 #include "transport/light_groups.h"
 #include "transport/path.h"
 #include "transport/path_settings.h"
 
 namespace chromeball {
+
+bool PathTracer::surfacesEndPaths(const World& world) {
+  return !world.accel.hasFilter() &&
+         std::ranges::none_of(world.scene.materials, [](const Material& m) {
+           return m.emits() || m.extended || m.backLetsLightThrough();
+         });
+}
+
+bool PathTracer::endsAtAnyHit(const PathState& state, const PathContext& context) const {
+  return surfacesEndPaths_ && state.bounces() == settings_.maxDepth && !state.isDelta &&
+         !state.place && !state.first &&
+         (!settings_.estimateDepthCut || state.cutIsEstimated ||
+          !isFollowed(DepthLimit::Depth, context));
+}
+
+bool PathTracer::escapes(const Ray& ray, PathContext& context) const {
+  if (context.log) context.log->rays.push_back({ray, true});
+  return !isBlack(world_.accel.transmittance(ray, settings_.visible));
+}
 
 void PathTracer::addBackground(PathState& state, const Rgb& background,
                                PathContext& context) const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "transport/path.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -26,14 +25,6 @@ bool needsMedium(const Accel& accel, const PathState& state, const Surface& surf
 bool isTransmission(const Surface& surface, const BsdfSample& bounce) {
   return surface.material->isBody() &&
          (bounce.isDelta || !surface.frontFace || glm::dot(surface.geometricNormal, bounce.wi) < 0);
-}
-
-// Whether paths without bounces left end, without light, at each surface of the scene.
-bool surfacesEndPaths(const World& world) {
-  return !world.accel.hasFilter() &&
-         std::ranges::none_of(world.scene.materials, [](const Material& m) {
-           return m.emits() || m.extended || m.backLetsLightThrough();
-         });
 }
 
 void countKind(PathState& state, bool isTransmission, bool isDiffuse) {
@@ -72,23 +63,11 @@ std::optional<Hit> PathTracer::closestHit(const Ray& ray, PathContext& context) 
   return hit;
 }
 
-bool PathTracer::escapes(const Ray& ray, PathContext& context) const {
-  if (context.log) context.log->rays.push_back({ray, true});
-  return !isBlack(world_.accel.transmittance(ray, settings_.visible));
-}
-
 std::optional<Hit> PathTracer::nextHit(const PathState& state, PathContext& context) const {
   if (!state.place) return closestHit(state.ray, context);
   Hit hit = state.place.current();
   hit.distance = 0;
   return hit;
-}
-
-bool PathTracer::endsAtAnyHit(const PathState& state, const PathContext& context) const {
-  return surfacesEndPaths_ && state.bounces() == settings_.maxDepth && !state.isDelta &&
-         !state.place && !state.first &&
-         (!settings_.estimateDepthCut || state.cutIsEstimated ||
-          !isFollowed(DepthLimit::Depth, context));
 }
 
 Surface PathTracer::surfaceOf(const PathState& state, const Hit& hit) const {
@@ -289,13 +268,6 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
   if (limitsKinds_ && !limitKinds(state, bsdf)) [[unlikely]]
     return false;
   return scatterAs<false>(state, surface, bsdf, context);
-}
-
-bool PathTracer::limitKinds(const PathState& state, Bsdf& bsdf) const {
-  const KeptLobes kept{state.diffuse < settings_.maxDiffuseDepth,
-                       state.specular < settings_.maxSpecularDepth};
-  if (!kept.diffuse || !kept.specular) bsdf.keepOnly(kept);
-  return kept.diffuse || kept.specular;
 }
 
 Rgb PathTracer::follow(PathState state, std::optional<Hit> hit, PathContext& context) const {

@@ -130,6 +130,8 @@ class PathTracer {
   // `weight`: output, the weight of the path that continues, if that is chosen at random.
   std::optional<Hit> metAt(PathState& state, const Hit& hit, const Surface& surface, float& weight,
                            PathContext& context) const;
+  // Whether paths without bounces left end, without light, at each surface of the scene.
+  static bool surfacesEndPaths(const World& world);
   bool sharesPlace(const Hit& hit) const {
     return world_.sharedPlaces.contains(hit.instance, hit.triangle);
   }

@@ -284,10 +284,9 @@ void addCameraCommand(Command app) {
   command.addFlag("--json", a.json, "print JSON");
   command.footer(
       "Positions px, py are in pixels from the photograph's top left corner. The ends of a line "
-      "go\n"
-      "from one to another farther along the positive axis. `metres` is the length of a line "
-      "whose\n"
-      "first end is on the ground: the scale; that end is the origin, unless --origin is given.\n");
+      "go\nfrom one to another farther along the positive axis. `metres` is the length of a line "
+      "whose\nfirst end is on the ground: the scale; that end is the origin, unless --origin is "
+      "given.\n");
 }
 
 }  // namespace chromeball

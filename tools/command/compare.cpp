@@ -172,11 +172,10 @@ void compare(const CompareArguments& a, const Command& command) {
   const bool hadComposite = scene.composite.has_value();
   scene.composite.reset();
   if (hadComposite && scene.plateScale && !a.scene.settings.has("probe.scale"))
-    throw InputError(
-        fmt::format("{}: scale = \"plate\" is of the [composite], which is ignored here; give the "
-                    "number that a render of the scene prints",
-                    *scene.plateScale),
-        Remedy{"probe.scale", {}});
+    throw InputError(fmt::format("{}: scale = \"plate\" is of the [composite], which is ignored "
+                                 "here; give the number that a render of the scene prints",
+                                 *scene.plateScale),
+                     Remedy{"probe.scale", {}});
   dropUnheeded(scene, SceneCommand::Compare);
   RenderDescription description = planRender(std::move(scene), a.scene.settings);
   Messages ofRows;

@@ -135,10 +135,9 @@ void addProbeRaysCommand(Command probe) {
   command.addOption("--mapping", a.mapping, "the mapping of PROBE; auto detects it");
   command.addFlag("--json", a.json, "print JSON");
   command.footer(
-      "Samplings:\n"
-      "  uniform      directions uniform over the hemisphere\n"
-      "  cosine       pdf proportional to the cosine\n"
-      "  luminance    pdf proportional to the probe's luminance, over the whole sphere\n");
+      "Samplings:\n  uniform      directions uniform over the hemisphere\n  cosine       pdf "
+      "proportional to the cosine\n  luminance    pdf proportional to the probe's luminance, over "
+      "the whole sphere\n");
 }
 
 }  // namespace chromeball

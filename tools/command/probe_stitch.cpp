@@ -108,13 +108,11 @@ void addProbeStitchCommand(Command probe) {
   command.addFlag("--same-exposure", a.sameExposure,
                   "take the tiles as they are; else factors make them agree where they overlap");
   command.footer(
-      "The list:\n"
-      "  fov = 50            # vertical, degrees; of all tiles that give none\n"
-      "  [[tile]]\n"
-      "  file = \"a.exr\"      # linear, relative to the list\n"
-      "  yaw = 40            # of the camera, as of a probe's rotation: 0 looks along -Z,\n"
-      "  pitch = 10          # positive yaw to the left, positive pitch up,\n"
-      "  roll = 0            # positive roll lifts the camera's right\n");
+      "The list:\n  fov = 50            # vertical, degrees; of all tiles that give none\n  "
+      "[[tile]]\n  file = \"a.exr\"      # linear, relative to the list\n  yaw = 40            # "
+      "of the camera, as of a probe's rotation: 0 looks along -Z,\n  pitch = 10          # "
+      "positive yaw to the left, positive pitch up,\n  roll = 0            # positive roll lifts "
+      "the camera's right\n");
 }
 
 }  // namespace chromeball

@@ -35,8 +35,7 @@ void checkFactorsDiffer(const PhotographSeries& series, const std::vector<dvec3>
   };
   if (factors.size() > 1 && std::ranges::all_of(factors, isFirst))
     throwInput(
-        "{}: has the same exposure as all others; give different ones, or state the "
-        "exposures",
+        "{}: has the same exposure as all others; give different ones, or state the exposures",
         series.files.back());
 }
 
@@ -102,11 +101,10 @@ void checkShifts(std::span<const Exposure> exposures) {
   for (size_t i = 0; i + 1 < order.size(); ++i) {
     const Shift shift = findShift(order[i]->levels, order[i + 1]->levels);
     if (shift.isCertain())
-      throw InputError(
-          fmt::format("{}: seems shifted by {},{} pixels against {}; align the photographs first, "
-                      "or take them as they are",
-                      order[i + 1]->name, shift.dx, shift.dy, order[i]->name),
-          Remedy{"unaligned", {}});
+      throw InputError(fmt::format("{}: seems shifted by {},{} pixels against {}; align the "
+                                   "photographs first, or take them as they are",
+                                   order[i + 1]->name, shift.dx, shift.dy, order[i]->name),
+                       Remedy{"unaligned", {}});
   }
 }
 
@@ -114,8 +112,8 @@ void checkShifts(std::span<const Exposure> exposures) {
 std::string defaultResponse(const PhotographSeries& series, const PhotographLevels& photographs) {
   if (photographs.transfer == Transfer::Other)
     throwInput(
-        "{}: states that its levels are neither linear nor encoded as sRGB (gAMA, cICP); give "
-        "the response",
+        "{}: states that its levels are neither linear nor encoded as sRGB (gAMA, cICP); give the "
+        "response",
         series.files.front());
   return photographs.isSrgb() ? "srgb" : "linear";
 }
@@ -192,9 +190,7 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   addWarnings(series, merged);
   for (size_t i = 0; i < series.files.size(); ++i)
     if (photographs.invalid[i] > 0)
-      addWarning(merged.messages,
-                 "{}: {} channels are NaN or negative; they count as "
-                 "black",
+      addWarning(merged.messages, "{}: {} channels are NaN or negative; they count as black",
                  series.files[i], photographs.invalid[i]);
   return merged;
 }

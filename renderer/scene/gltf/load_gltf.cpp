@@ -207,10 +207,9 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   scene.files = file.files();
   scene.isAnimated = isAnimated;
   if (!choice.animation && !file.model.animations.empty())
-    scene.notes.push_back(
-        fmt::format("{}: shown in its rest pose; a name and a time select one of its animations: "
-                    "{}",
-                    path, animationNames(file)));
+    scene.notes.push_back(fmt::format(
+        "{}: shown in its rest pose; a name and a time select one of its animations: {}", path,
+        animationNames(file)));
   if (warn) std::ranges::for_each(file.warnings(), warn);
   return scene;
 }

@@ -87,11 +87,10 @@ Messages doubtsAbout(const CameraFit& fit) {
                "positions, and that pixels count from the top left",
                rms);
   else if (fit.rivalRms && *fit.rivalRms < leastRatio(fit) * rms)
-    addWarning(
-        messages,
-        "another camera fits nearly as well, with {:.3g} instead of {:.3g} pixels; more points, "
-        "not on one plane, tell which is right",
-        *fit.rivalRms, rms);
+    addWarning(messages,
+               "another camera fits nearly as well, with {:.3g} instead of {:.3g} pixels; more "
+               "points, not on one plane, tell which is right",
+               *fit.rivalRms, rms);
   if (fit.errors.fov && *fit.errors.fov > kUncertain * fit.camera.fov())
     addWarning(messages,
                "the field of view is uncertain by more than a tenth; give it if it is known");
@@ -146,8 +145,8 @@ class Reader {
     root_ = readJson({bytes.begin(), bytes.end()});
     if (!root_.is_object())
       throwInput(
-          "{}: is not JSON with the camera parameters of fSpy; a project (.fspy) is not: "
-          "export them",
+          "{}: is not JSON with the camera parameters of fSpy; a project (.fspy) is not: export "
+          "them",
           path_);
   }
 

@@ -139,8 +139,8 @@ std::string row(const Cell& cell, const StrategyResult& strategy, double mostEff
 std::string resultsHtml(const Study& study, const StudyResults& results) {
   std::string html =
       "<table "
-      "id=\"results\"><thead><tr><th>strategy</th><th></th><th>efficiency</th><th>relMSE</th>"
-      "<th>seconds</th><th>preparation,<br>seconds</th><th>bias, %</th><th>slope "
+      "id=\"results\"><thead><tr><th>strategy</th><th></th><th>efficiency</th><th>relMSE</"
+      "th><th>seconds</th><th>preparation,<br>seconds</th><th>bias, %</th><th>slope "
       "of<br>variance</th><th>slope of<br>relMSE</th><th>bias = noise<br>at "
       "samples</th></tr></thead><tbody>\n";
   const std::vector<const Cell*> cells = ranking(study, results);
@@ -155,8 +155,8 @@ std::string resultsHtml(const Study& study, const StudyResults& results) {
 std::string pairsHtml(const StudyResults& results) {
   if (results.pairs.empty()) return "<p>Fewer than two strategies can be compared here.</p>\n";
   std::string html =
-      "<table id=\"pairs\"><thead><tr><th>pair</th><th>p</th><th>tiles that differ</th></tr>"
-      "</thead><tbody>\n";
+      "<table id=\"pairs\"><thead><tr><th>pair</th><th>p</th><th>tiles that "
+      "differ</th></tr></thead><tbody>\n";
   for (const PairResult& pair : results.pairs)
     html += fmt::format("<tr><td>{} and {}</td><td{}>{:.2g}</td><td>{:.2g}%</td></tr>\n",
                         escaped(pair.a), escaped(pair.b),
@@ -185,31 +185,30 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
   fill(page, "title",
        escaped(fmt::format("{}: {} lighting strategies", scene.name, results.strategies.size())));
   fill(page, "subtitle",
-       escaped(fmt::format("{} x {} pixels, {} independent renders of each strategy and budget; "
-                           "reference: {}.",
-                           results.reference.mean.width, results.reference.mean.height,
-                           repeatsText(results), referenceText(study, results))));
+       escaped(fmt::format(
+           "{} x {} pixels, {} independent renders of each strategy and budget; reference: {}.",
+           results.reference.mean.width, results.reference.mean.height, repeatsText(results),
+           referenceText(study, results))));
   fill(page, "verdict", verdictList(study, results));
   fill(page, "warnings", paragraphs(results.warnings));
   fill(page, "plots", samplesPlot(results) + secondsPlot(results));
   fill(page, "tableNote",
-       escaped(fmt::format(
-           "With {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), relative to "
-           "{}: of two unbiased strategies, one with twice the efficiency needs half the time for "
-           "the same error. The number after +- is half the 95% confidence interval; not "
-           "significant: the interval includes 0. Slopes are of log error against log samples: -1 "
-           "for independent samples.",
-           at, study.baseline)));
+       escaped(
+           fmt::format("With {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), "
+                       "relative to {}: of two unbiased strategies, one with twice the efficiency "
+                       "needs half the time for the same error. The number after +- is half the "
+                       "95% confidence interval; not significant: the interval includes 0. Slopes "
+                       "are of log error against log samples: -1 for independent samples.",
+                       at, study.baseline)));
   fill(page, "table", resultsHtml(study, results));
-  fill(
-      page, "pairsNote",
-      escaped(fmt::format(
-          "Unbiased strategies must agree up to noise. The test is Welch's t-test on each tile of "
-          "{0} x {0} pixels with {1}; p is the probability of the largest difference of a tile if "
-          "there is only noise, corrected for the number of tiles (Sidak). By chance one of twenty "
-          "pairs has p below 0.05. Strategies with a relMSE above {2:g} are excluded, because they "
-          "have not sampled all light yet.",
-          Agreement::kTile, at, kMaxNoiseOfPairs)));
+  fill(page, "pairsNote",
+       escaped(fmt::format(
+           "Unbiased strategies must agree up to noise. The test is Welch's t-test on each tile of "
+           "{0} x {0} pixels with {1}; p is the probability of the largest difference of a tile if "
+           "there is only noise, corrected for the number of tiles (Sidak). By chance one of "
+           "twenty pairs has p below 0.05. Strategies with a relMSE above {2:g} are excluded, "
+           "because they have not sampled all light yet.",
+           Agreement::kTile, at, kMaxNoiseOfPairs)));
   fill(page, "pairs", pairsHtml(results));
   std::string probes;
   for (const auto& [name, directions] : scene.directions) probes += dots(name, directions);
