@@ -27,9 +27,7 @@ namespace {
 
 // A file is at fault only for what its bytes say.
 TEST(ImageReaders, ScarceMemoryAndThreadsAreNoFaultOfTheFile) {
-  const auto read = [](const auto& error) {
-    readByLibrary("a.exr", [&] { throw error; });
-  };
+  const auto read = [](const auto& error) { readByLibrary("a.exr", [&] { throw error; }); };
   EXPECT_THROW(read(std::bad_alloc()), RunError);
   EXPECT_THROW(read(std::system_error(EAGAIN, std::generic_category())), RunError);
   EXPECT_THROW(read(std::runtime_error("Resource temporarily unavailable")), RunError);
