@@ -322,7 +322,7 @@ TEST(SlowGuide, ServesComposites) {
   const World world(scene, rayMasks(isObject), allTables());
   const Probe probe = sunBehind();
   const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
-  const Image plate = constantProbe({32, 32}, Rgb(0.5f));
+  const Image plate = constantProbe({GuidedAndNot::kSize, GuidedAndNot::kSize}, Rgb(0.5f));
   const std::atomic<bool> stop = false;
   const GuidedAndNot renders([&](const RenderSettings& settings) {
     const CompositeRender r = renderComposite(

@@ -39,15 +39,6 @@ TEST(Frame, isOrthonormalForEveryNormal) {
   }
 }
 
-// The point of the square whose concentric map is the direction's foot in the unit disc.
-vec2 concentricSquare(const vec3& v) {
-  const bool isWide = std::fabs(v.x) > std::fabs(v.y);
-  const float along = isWide ? v.x : v.y, across = isWide ? v.y : v.x;
-  const float r = std::copysign(std::sqrt(v.x * v.x + v.y * v.y), along);
-  const float other = r == 0 ? 0 : 8 * r * atan2Turns(across / along, 1.0f);
-  return (vec2(isWide ? r : other, isWide ? other : r) + 1.0f) / 2.0f;
-}
-
 struct Warp {
   const char* name;
   vec3 (*toDirection)(vec2);
@@ -61,7 +52,8 @@ const Warp kWarps[] = {
      [](const vec3& v) { return double(squareToUniformHemispherePdf(v)); },
      [](const vec3& v) { return vec2(azimuthTurns(v), 1 - v.z); }},
     {"cosine hemisphere", squareToCosineHemisphere,
-     [](const vec3& v) { return double(squareToCosineHemispherePdf(v)); }, concentricSquare}};
+     [](const vec3& v) { return double(squareToCosineHemispherePdf(v)); },
+     [](const vec3& v) { return vec2(azimuthTurns(v), v.x * v.x + v.y * v.y); }}};
 
 TEST(Warp, matchesItsPdfAndItsInverse) {
   for (const Warp& warp : kWarps) {

@@ -146,7 +146,7 @@ TEST(Suns, PenumbraOfAStraightEdge) {
   const Camera camera = topCamera(1, fov);
   for (const double angle : {5.0, 20.0}) {
     const Suns suns(probe, false, angle);
-    const RenderSettings settings = smallRender(kWidth, kWidth, 64, 1);
+    const RenderSettings settings = smallRender(kWidth, kWidth, 16, 1);
     const Image image = render(
                             world, camera, suns, settings, [](double) {}, stop)
                             .film.mean();

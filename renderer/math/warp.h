@@ -28,18 +28,13 @@ inline vec2 uniformSphereToSquare(const vec3& v) { return {azimuthTurns(v), (1 -
 inline vec3 squareToUniformHemisphere(vec2 u) { return unitVector(1 - u.y, u.x); }
 inline float squareToUniformHemispherePdf(const vec3& v) { return v.z >= 0 ? 0.5f * kInvPi : 0; }
 
-// Pdf cos(theta)/pi: lifts a uniform point of the unit disc to the hemisphere (Malley's method).
-// Concentric squares become circles (Shirley and Chiu 1997, "A Low Distortion Map Between Disk and
-// Square"), which keeps neighbours together: up to 7% less variance than a polar map.
+// Pdf cos(theta)/pi: lifts a uniform point of the unit disc, at radius sqrt(u.y), to the hemisphere
+// (Malley's method).
 inline vec3 squareToCosineHemisphere(vec2 u) {
-  const float x = 2 * u.x - 1, y = 2 * u.y - 1;
-  const bool isWide = std::fabs(x) > std::fabs(y);
-  const float r = isWide ? x : y, other = isWide ? y : x;  // the sign of r chooses the quadrant
-  if (r == 0) return {0, 0, 1};
   float sine, cosine;
-  sinCosTurns(other / r / 8, sine, cosine);
-  const float along = r * cosine, across = r * sine;
-  return {isWide ? along : across, isWide ? across : along, std::sqrt(std::max(1 - r * r, 0.0f))};
+  sinCosTurns(u.x, sine, cosine);
+  const float r = std::sqrt(u.y);
+  return {r * cosine, r * sine, std::sqrt(1 - u.y)};
 }
 inline float squareToCosineHemispherePdf(const vec3& v) { return v.z > 0 ? v.z * kInvPi : 0; }
 

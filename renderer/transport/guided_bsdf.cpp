@@ -16,8 +16,9 @@ GuidedBsdf::GuidedBsdf(const Bsdf& bsdf, const vec3& position, const vec3& wo,
   fraction_ = guide->fraction();
 }
 
-bool GuidedBsdf::sampleLobes(vec2 u, float lobe, Bounce& out) const {
-  const CausticLobes::Sample chosen = lobes_->sample(position_, u, lobe);
+bool GuidedBsdf::sampleLobes(const PixelSampler& sampler, Bounce& out) const {
+  const CausticLobes::Sample chosen =
+      lobes_->sample(position_, sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe));
   const BsdfValue value = bsdf_.evaluate(chosen.direction);
   if (isBlack(value.fCos)) return false;
   out.wi = chosen.direction;
@@ -30,11 +31,9 @@ bool GuidedBsdf::sampleLobes(vec2 u, float lobe, Bounce& out) const {
 }
 
 bool GuidedBsdf::sample(const PixelSampler& sampler, Bounce& out) const {
-  const vec2 u = sampler.get2(dimension::kBsdf);
-  // Below the fraction, the number is uniform too: it chooses the lobe, as well stratified.
-  if (const float number = lobes_ ? sampler.get1(dimension::kBounce) : 1; number < fraction_)
-    return sampleLobes(u, std::min(number / fraction_, 0x1.fffffep-1f), out);
-  if (!bsdf_.sample(u, sampler.get1(dimension::kLobe), out)) return false;
+  if (lobes_ && sampler.get1(dimension::kBounce) < fraction_) return sampleLobes(sampler, out);
+  if (!bsdf_.sample(sampler.get2(dimension::kBsdf), sampler.get1(dimension::kLobe), out))
+    return false;
   out.bsdfPdf = out.pdf;
   if (!lobes_) return true;
   if (out.isDelta || out.lobes == Lobes::Narrow) {

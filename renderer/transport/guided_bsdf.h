@@ -39,7 +39,7 @@ class GuidedBsdf {
   float mixed(float bsdfPdf, float lobesPdf) const {
     return fraction_ * lobesPdf + (1 - fraction_) * bsdfPdf;
   }
-  bool sampleLobes(vec2 u, float lobe, Bounce& out) const;
+  bool sampleLobes(const PixelSampler& sampler, Bounce& out) const;
 
   const Bsdf& bsdf_;
   const vec3& position_;
