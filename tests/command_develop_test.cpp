@@ -122,6 +122,40 @@ TEST(CommandDevelop, EnvmapIsNotKept) {
   EXPECT_EQ(run({in, folder / "out.png"}).error, "");
 }
 
+// What tells a probe's directions is kept by what changes its colour, or its loss is told.
+TEST(CommandDevelop, MappingsAreKeptOrNamed) {
+  const TemporaryFolder folder;
+  const std::string ball = folder / "ball.exr", ones = folder / "ones.exr",
+                    turned = folder / "turned.exr";
+  const auto write = [](const std::string& path, const Metadata& metadata) {
+    writeImage(path, OutputImage{{{"", "RGB", filled(16, 16, 3, 1)}}, metadata});
+  };
+  write(ball, {{kMappingAttribute, std::string("mirror-ball")}});
+  write(ones, {});
+  write(turned, {{kEnvmapAttribute, std::string(kEnvmapLatLong)}});
+  const auto commandsTo = [&](const std::string& in, const std::string& out) {
+    return std::vector<std::vector<std::string>>{
+        {"image", "develop", in, out},
+        {"image", "divide", in, ones, "-o", out},
+        {"probe", "merge", in, in, "--exposures", "1,0.5", "--response", "linear", "--unaligned",
+         "-o", out}};
+  };
+  for (const char* name : {"out.exr", "out.hdr"})
+    for (const auto& command : commandsTo(ball, folder / name)) {
+      const CommandResult result = runCommand(command);
+      ASSERT_EQ(result.status, 0) << result.error;
+      const Metadata kept = readImageFile(folder / name).metadata;
+      ASSERT_TRUE(kept.contains(kMappingAttribute)) << command[1] << " to " << name;
+      EXPECT_EQ(std::get<std::string>(kept.at(kMappingAttribute)), "mirror-ball");
+    }
+  for (const auto& command : commandsTo(ball, folder / "out.pfm"))
+    EXPECT_NE(runCommand(command).error.find("has no place for the mapping of"), std::string::npos)
+        << command[1];
+  for (const auto& command : commandsTo(turned, folder / "out.exr"))
+    EXPECT_NE(runCommand(command).error.find("needs a rotation of 180 degrees"), std::string::npos)
+        << command[1];
+}
+
 TEST(CommandDevelop, InfinityIsClipped) {
   const TemporaryFolder folder;
   Image image = filled(4, 4, 3, 0.5f);

@@ -479,10 +479,10 @@ TEST(SlowWriteEvery, WritesImagesThatGrow) {
   const std::string path = parts.out / "growing.exr";
   Child child(parts.words({"--samples", "1000000", "--write-every", "0.1", "--quiet"}, path));
   const auto samples = [&] { return std::get<int>(readImageFile(path).metadata.at("samples")); };
-  for (int i = 0; i < 1000 && !std::filesystem::exists(path); ++i) usleep(10'000);
+  for (int i = 0; i < 10'000 && !std::filesystem::exists(path); ++i) usleep(10'000);
   const int first = samples();
   int last = first;
-  for (int i = 0; i < 1000 && last <= first; ++i) usleep(10'000), last = samples();
+  for (int i = 0; i < 10'000 && last <= first; ++i) usleep(10'000), last = samples();
   EXPECT_GT(first, 0);
   EXPECT_GT(last, first);
   child.kill();

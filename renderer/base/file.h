@@ -51,8 +51,7 @@ class FileBytes {
 
 // Checks that a file can be created or replaced at `path`, so that a run fails before the work and
 // not after it. The write itself may still fail. Throws InputError if the folder does not exist or
-// `path` is no file that can be replaced (file.h), RunError if nothing can be written into
-// it.
+// `path` is no file that can be replaced, RunError if nothing can be written into it.
 void checkReplaceable(const std::filesystem::path& path);
 
 // Writes the bytes atomically. Throws RunError.

@@ -32,20 +32,20 @@ struct Message {
 using Messages = std::vector<Message>;
 
 template <class... Args>
-Message note(fmt::format_string<Args...> format, Args&&... args) {
+Message makeNote(fmt::format_string<Args...> format, Args&&... args) {
   return {Message::Kind::Note, fmt::format(format, std::forward<Args>(args)...)};
 }
 template <class... Args>
-Message warning(fmt::format_string<Args...> format, Args&&... args) {
+Message makeWarning(fmt::format_string<Args...> format, Args&&... args) {
   return {Message::Kind::Warning, fmt::format(format, std::forward<Args>(args)...)};
 }
 template <class... Args>
 void addNote(Messages& messages, fmt::format_string<Args...> format, Args&&... args) {
-  messages.push_back(note(format, std::forward<Args>(args)...));
+  messages.push_back(makeNote(format, std::forward<Args>(args)...));
 }
 template <class... Args>
 void addWarning(Messages& messages, fmt::format_string<Args...> format, Args&&... args) {
-  messages.push_back(warning(format, std::forward<Args>(args)...));
+  messages.push_back(makeWarning(format, std::forward<Args>(args)...));
 }
 
 // Merges many messages of a kind into one.

@@ -32,7 +32,7 @@ inline std::vector<RayMask> rayMasks(const ObjectMask& isObject) {
 // Path tracers of both worlds of a composite. The camera does not see the probe, because the plate
 // is the background.
 struct CompositeWorlds {
-  // `world` must have the masks of composite/differential.h; it and `lighting` must outlive this.
+  // `world` must have the masks of rayMasks(); it and `lighting` must outlive this.
   CompositeWorlds(const World& world, const LightSource& lighting, PathSettings settings)
       : whole(world, lighting, with(settings, kAllInstances, kAllInstances)),
         local(world, lighting, with(settings, kLocalScene, kLocalScene)),

@@ -30,9 +30,11 @@ bool samplesAreas(const D& d) {
   return strategy == "suns" || (strategy != "bsdf" && !hasLights(strategy));
 }
 
+bool hasOcclusionLayer(const D& d) {
+  return d.settings.wantsAov(Aov::AmbientOcclusion) || d.settings.wantsAov(Aov::BentNormal);
+}
 bool wantsOcclusion(const D& d) {
-  return d.settings.integrator == IntegratorKind::AmbientOcclusion ||
-         d.settings.wantsAov(Aov::AmbientOcclusion) || d.settings.wantsAov(Aov::BentNormal);
+  return d.settings.integrator == IntegratorKind::AmbientOcclusion || hasOcclusionLayer(d);
 }
 
 bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
@@ -107,7 +109,7 @@ constexpr std::array kDependences = {
                }},
     Dependence{"render.ao_distance", "light from everywhere",
                [](const D& d, const SceneContents& c) {
-                 return c.hasProbe || c.hasAmbientLight || wantsOcclusion(d);
+                 return c.hasProbe || c.hasAmbientLight || hasOcclusionLayer(d);
                }},
     Dependence{"render.reflection_occlusion", "light from everywhere",
                [](const D& d, const SceneContents& c) {

@@ -76,7 +76,7 @@ void convertColor(Image& image, const glm::dmat3& matrix) {
 }
 
 Message conversionNote(const std::filesystem::path& path, const Chromaticities& from) {
-  return note(
+  return makeNote(
       "{}: its colour is converted to Rec. 709 from red ({:.4g}, {:.4g}), green "
       "({:.4g}, {:.4g}), blue ({:.4g}, {:.4g}), white ({:.4g}, {:.4g})",
       path.string(), from.red.x, from.red.y, from.green.x, from.green.y, from.blue.x, from.blue.y,

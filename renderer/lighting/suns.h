@@ -73,7 +73,7 @@ class SkyDiscs {
   std::optional<CdfRows> choice_;  // of one disc by power; empty if all are sampled
 };
 
-// Takes one stratified sample of each sun, or of one of many (suns.h), and one of the
+// Takes one stratified sample of each sun, or of one of many, and one of the
 // remainder. All rays, including those of the camera and mirrors, see the
 // remainder plus the discs, so energy is counted once. The only bias is the shape of the suns,
 // visible in highlights and penumbras: a disc with the irradiance and the spread of the source that

@@ -25,7 +25,7 @@ namespace chromeball {
 
 // Identifies the render that a file is a part of, and says how its image is made.
 struct RenderPart {
-  std::string identity;  // renderIdentity() (job_description.h)
+  std::string identity;  // renderIdentity() (session/image_header.h)
   FinishPlan plan;
 
   // The first bytes of a file. Throws InputError if another version wrote it.

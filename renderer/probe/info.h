@@ -50,7 +50,7 @@ struct ProbeInfo {
   dvec3 brightestDirection{0};
   Rgb brightest{0};
   double maxOverMean = 0;  // largest luminance over the mean over the sphere; 0 for a black probe
-  double robustRange = 0;  // info.h, as the following
+  double robustRange = 0;  // as the following: of the functions above
   Plateau plateau;
   double lostIfClippedAtWhite = 0;
   std::vector<Sun> suns;  // sun_extraction.h: in order of decreasing irradiance

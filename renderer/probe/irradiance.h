@@ -21,8 +21,8 @@ namespace chromeball {
 // Parallel; the same bits for any number of threads.
 std::vector<dvec3> exactIrradiance(const Image& latLong, std::span<const vec3> normals);
 
-// The same from nine spherical harmonics: fast, with an error of 1 to 10% on real probes
-// (irradiance.h), and negative about 120 degrees away from suns.
+// The same from nine spherical harmonics: fast, with an error of 1 to 10% on real probes,
+// and negative about 120 degrees away from suns.
 std::vector<dvec3> shIrradiance(const Image& latLong, std::span<const vec3> normals);
 
 // The directions of the texel centres of a lat-long map, row by row: the normals of an irradiance

@@ -30,16 +30,12 @@ struct LoadedProbe {
   Messages messages;              // of its reader, each "FILE: ..."
 };
 
-// The attribute of an EXR, or the comment of an HDR, with the name of its mapping.
-inline constexpr const char* kMappingAttribute = "mapping";
-
 // `mapping` is a name as on the command line. "auto" takes the mapping from the `envmap` or
 // `mapping` attribute of an EXR, or the comment `mapping` of an HDR, else detects it
-// (load.h). A lat-long map with `envmap`
-// has +Z in its centre and +X at its left quarter (OpenEXR's ImfEnvmap.h); it is turned by 180
-// degrees, to agree with the cube map of the same environment. A lat-long file of any shape keeps
-// its texels; others are converted at latLongSize() (convert.h). Throws InputError; it starts with
-// `mappingLocation` if the mapping is at fault.
+// (detectMapping()). A lat-long map with `envmap` has +Z in its centre and +X at its left quarter
+// (OpenEXR's ImfEnvmap.h); it is turned by 180 degrees, to agree with the cube map of the same
+// environment. A lat-long file of any shape keeps its texels; others are converted at latLongSize()
+// (convert.h). Throws InputError; it starts with `mappingLocation` if the mapping is at fault.
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping = "auto",
                       std::string_view mappingLocation = "mapping");
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Synthetic lat-long probes, for tests and for lighting without a photograph; the clear sky is in
-// synth.h.
+// Synthetic lat-long probes, for tests and for lighting without a photograph.
 #pragma once
 
 #include <array>

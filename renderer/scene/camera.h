@@ -62,7 +62,7 @@ struct Camera {
   // axis, without distortion: half the height is tan(fov / 2) focal lengths.
   vec2 principalPoint{0.5f, 0.5f};
   Distortion distortion;
-  // Its keys while the shutter is open (scene/camera.h); null: it stands still.
+  // Its keys while the shutter is open; null: it stands still.
   std::shared_ptr<const std::vector<Camera>> motion = nullptr;
 
   // Throws InputError if position and target coincide or if up is parallel to the view.

@@ -40,7 +40,7 @@ struct Texture {
   // Whether filtering weights colours by alpha, so that the colours of transparent texels do not
   // bleed into opaque ones. True for the base colour of blended or masked materials.
   bool weightedByAlpha = false;
-  MipChain mipLevels;  // texture.h; null: none
+  MipChain mipLevels;  // null: none
 
   // Linear RGBA at uv (v down, texel centres at +0.5). Any finite uv is valid; others give texel 0.
   vec4 lookup(vec2 uv) const;

@@ -18,7 +18,7 @@ struct PhaseSeconds {
   double load = 0, build = 0, prepare = 0, render = 0, write = 0;
 };
 
-// The statistics of `chromeball render --stats`: the description (job_description.h), samples,
+// The statistics of `chromeball render --stats`: the description (description/describe.h), samples,
 // rays, seconds, noise, memory. Numbers that are unknown are null.
 nlohmann::json statistics(const LoadedScene& loaded, const FinishedRender& result,
                           const PhaseSeconds& seconds);

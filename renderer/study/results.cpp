@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include <fmt/format.h>
 
@@ -185,12 +184,13 @@ std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults
       return s.name == name && findCell(s, budget);
     });
   };
-  for (const Budget& budget : study.shownBudgets | std::views::reverse)
-    if (isWanted(budget) && std::ranges::all_of(study.strategies, [&](const std::string& name) {
-          return has(name, budget);
-        }))
-      return budget;
-  return std::nullopt;
+  const auto& budgets = study.shownBudgets;  // ascending
+  const auto found = std::find_if(budgets.rbegin(), budgets.rend(), [&](const Budget& budget) {
+    return isWanted(budget) && std::ranges::all_of(study.strategies, [&](const std::string& name) {
+             return has(name, budget);
+           });
+  });
+  return found == budgets.rend() ? std::nullopt : std::optional(*found);
 }
 
 std::optional<Budget> largestCommonBudget(const Study& study, const StudyResults& results) {

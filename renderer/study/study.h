@@ -36,7 +36,7 @@ uint64_t seedOf(const RenderKey& key, uint64_t studySeed);
 
 struct Study {
   std::string folder;
-  std::vector<std::string> strategies;  // to render; names of rows (study.h)
+  std::vector<std::string> strategies;  // to render; names of rows
   std::vector<Budget> budgets;          // to render; ascending
   int repeats = 4;                      // of each strategy and budget
   std::string baseline;                 // one of the strategies

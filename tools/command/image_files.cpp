@@ -50,10 +50,15 @@ Image openImage(const std::filesystem::path& path, IntegerTexels integers) {
 
 Metadata keptMetadata(const ImageFile& file, const std::string& in, const std::string& out) {
   Metadata kept = file.metadata;
+  const std::string extension = lowerExtension(out);
+  if (const auto mapping = kept.find(kMappingAttribute);
+      mapping != kept.end() && extension == ".pfm")
+    if (const auto* name = std::get_if<std::string>(&mapping->second))
+      warn("{}: has no place for the mapping of {}, {}; write an .exr or .hdr", out, in, *name);
   const auto envmap = kept.find(kEnvmapAttribute);
   if (envmap == kept.end()) return kept;
   const auto* kind = std::get_if<std::string>(&envmap->second);
-  if (kind && *kind == kEnvmapLatLong && lowerExtension(out) != ".png")
+  if (kind && *kind == kEnvmapLatLong && extension != ".png")
     warn(
         "{}: its `envmap` attribute, which puts +Z in the centre, is not kept: as a "
         "probe, {} needs a rotation of 180 degrees",
@@ -74,14 +79,10 @@ ImageSize checkedSize(const std::string& file, const ImageSize& size, double cop
 }
 
 void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
-  const std::string kind = lowerExtension(file), name = mappingName(mapping);
-  if (kind == ".hdr") {
-    checkWritable(file);
-    writeRadianceHdr(file, map, {{kMappingAttribute, name}});
-    return print(lostLight(file, map));
-  }
-  print(writeImage(file, OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, name}}}));
-  if (kind == ".exr") return;
+  const std::string kind = lowerExtension(file);
+  print(writeImage(file,
+                   OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, mappingName(mapping)}}}));
+  if (kind == ".exr" || kind == ".hdr") return;
   warnOfLostMapping(file, map, mapping);
   if (kind == ".png") warnOfClipping(file, map);
 }

@@ -170,13 +170,20 @@ void print(const PhotographSeries& series, const MergedPhotographs& merged) {
 // Of a merged image, from the channels of its photographs: those that a filter is applied in.
 constexpr const char* kToRec709 = "photographsToRec709";
 
-Metadata metadataOf(const MergedPhotographs& merged) {
-  if (merged.toRec709 == glm::dmat3(1)) return {};
+// Of the photographs' metadata only what tells their directions is true of the result.
+Metadata metadataOf(const MergedPhotographs& merged, const ProbeMergeArguments& arguments) {
+  ImageFile first;
+  for (const char* name : {kMappingAttribute, kEnvmapAttribute})
+    if (const auto found = merged.metadata.find(name); found != merged.metadata.end())
+      first.metadata.insert(*found);
+  Metadata kept = keptMetadata(first, arguments.files.front(), arguments.output);
+  if (merged.toRec709 == glm::dmat3(1)) return kept;
   Matrix44 matrix{};  // rows
   for (int i = 0; i < 4; ++i)
     for (int k = 0; k < 4; ++k)
       matrix[size_t(4 * i + k)] = i < 3 && k < 3 ? float(merged.toRec709[k][i]) : float(i == k);
-  return {{kToRec709, matrix}};
+  kept[kToRec709] = matrix;
+  return kept;
 }
 
 void merge(const ProbeMergeArguments& arguments) {
@@ -198,7 +205,7 @@ void merge(const ProbeMergeArguments& arguments) {
   if (!arguments.responseOutput.empty()) merged.response.write(arguments.responseOutput);
   print(writeImage(arguments.output, OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
                                                   {"clipped", "", std::move(merged.image.clipped)}},
-                                                 metadataOf(merged),
+                                                 metadataOf(merged, arguments),
                                                  {},
                                                  {}}));
 }

@@ -19,7 +19,7 @@ inline constexpr double kMaxExactSigma = 8;
 // The kernel is the integral of the Gaussian over each pixel,
 //   k(d) = (erf((d + 1/2) / (sqrt2 sigma)) - erf((d - 1/2) / (sqrt2 sigma))) / 2,
 // of variance sigma^2 + 1/12; so a square of a x a pixels (a odd) has erf(a / (2 sqrt2 sigma))^2 in
-// its centre. The line is mirrored at its ends (gaussian_line.h), and its sum is kept.
+// its centre. The line is mirrored at its ends, and its sum is kept.
 //
 // Fast: with f = 2^n, 4 <= sigma / f < 8, cubic B-splines of f pixels per knot reduce the line; a
 // Gaussian of standard deviation s filters it; the same splines interpolate. The variances are

@@ -24,6 +24,9 @@ using Metadata = std::map<std::string, std::variant<std::string, int, float, dou
 // The number with this name, whatever its type; nullopt if there is none, or a text or a matrix.
 std::optional<double> metadataNumber(const Metadata& metadata, const std::string& name);
 
+// The name of a probe's mapping in Metadata: an attribute of .exr, a comment of .hdr.
+inline constexpr const char* kMappingAttribute = "mapping";
+
 // OpenEXR's attribute of probes in Metadata, and its values (ImfEnvmap.h).
 inline constexpr const char* kEnvmapAttribute = "envmap";
 inline constexpr const char* kEnvmapLatLong = "latlong";

@@ -33,12 +33,19 @@ Image repeated(const Image& grey) {
   return color;
 }
 
+HdrComments mappingOf(const Metadata& metadata) {
+  const auto found = metadata.find(kMappingAttribute);
+  const auto* name = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return name ? HdrComments{{kMappingAttribute, *name}} : HdrComments{};
+}
+
 // The formats that hold only the colour.
-Messages writeColor(const fs::path& path, const Image& color, const DisplayTransform& transform) {
-  if (color.channels < 3) return writeColor(path, repeated(color), transform);
+Messages writeColor(const fs::path& path, const Image& color, const DisplayTransform& transform,
+                    const Metadata& metadata = {}) {
+  if (color.channels < 3) return writeColor(path, repeated(color), transform, metadata);
   const std::string kind = lowerExtension(path);
   if (kind == ".hdr")
-    writeRadianceHdr(path, color);
+    writeRadianceHdr(path, color, mappingOf(metadata));
   else if (kind == ".pfm")
     writePfm(path, color);
   else
@@ -65,7 +72,7 @@ std::optional<Message> uncoveredLight(const std::filesystem::path& path, const I
     lost += luminance(glm::max(rgb - Rgb(alpha), Rgb(0)));
   }
   if (pixels == 0) return {};
-  return warning(
+  return makeWarning(
       "{}: loses light on {:.2g}% of the pixels, {:.2g}% of the image's: a .png has no color "
       "beyond its alpha, and nothing covers the background there; an .exr holds it",
       path.string(), 100. * double(pixels) / (double(color.width) * color.height),
@@ -173,7 +180,7 @@ Messages writeImage(const fs::path& path, const OutputImage& output,
                     const DisplayTransform& transform) {
   checkWritable(path);
   if (lowerExtension(path) != ".exr")
-    return writeColor(path, output.layers.front().image, transform);
+    return writeColor(path, output.layers.front().image, transform, output.metadata);
   writeExr(path, output);
   return {};
 }

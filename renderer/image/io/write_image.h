@@ -40,9 +40,10 @@ void checkImageName(const std::filesystem::path& path);
 // checkImageName() and checkReplaceable() (base/file.h), to be called before rendering.
 void checkWritable(const std::filesystem::path& path);
 
-// .exr: all layers and the metadata; float32, scanlines, ZIP. .hdr and .pfm: the colour. .png: the
+// .exr: all layers and the metadata; float32, scanlines, ZIP. .hdr and .pfm: the colour, and in
+// .hdr the metadata's `mapping`. .png: the
 // colour after `transform`, 8 bits, sRGB, with unassociated alpha (the layer's colour is associated
-// and is divided by alpha first). Returns warnings of what the file cannot hold (write_image.h).
+// and is divided by alpha first). Returns warnings of what the file cannot hold (lostLight()).
 // Throws as checkWritable() does, and RunError if writing fails.
 Messages writeImage(const std::filesystem::path& path, const OutputImage& output,
                     const DisplayTransform& transform = {});

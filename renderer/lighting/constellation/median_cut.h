@@ -11,14 +11,14 @@ namespace chromeball {
 
 // Repeatedly cuts the region of highest energy (luminance) across its longer side, at the column or
 // row that divides the energy most equally; the width counts times the cosine of the latitude. Any
-// count is possible; powers of two give the published algorithm (median_cut.h has it to the
-// letter). A region's light is at the energy centroid of its directions. No region crosses the seam
-// of the map, so the lights depend on the position of the seam.
+// count is possible; powers of two give the published algorithm (below, to the letter). A region's
+// light is at the energy centroid of its directions. No region crosses the seam of the map, so the
+// lights depend on the position of the seam.
 std::vector<Region> medianCutRegions(const RegionTable& table, int count);
 
 // `median-cut-centre`, `median-cut-flat`, and median cut by levels: the variants that the HDRI book
 // (section 9.6.2) and Madsen and Laursen (2007, section 4.1) describe.
-// All regions are cut (median_cut.h) before any of their parts: after K levels there are 2^K, but
+// All regions are cut before any of their parts: after K levels there are 2^K, but
 // at most `count`: on the last level those with the highest energy are cut. Black margins stay in
 // their regions, which matters for centres. A part without light is dropped; a region of a single
 // lit cell is not cut.

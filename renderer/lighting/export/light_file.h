@@ -42,7 +42,7 @@ LightFormat lightFormat(const std::filesystem::path& path, std::string_view name
 //           units); the colour's largest component is 1. Ambient light and angles, which the
 //           extension lacks, are in extras.
 //   Csv     header x,y,z,r,g,b,angle, then a line per light; without the ambient light
-//   OpenGl  a C header (light_file.h)
+//   OpenGl  a C header
 void writeLights(const std::filesystem::path& path, const LightRig& rig, LightFormat format);
 
 // Writes the lights in the format of the extension. Throws InputError for another extension.

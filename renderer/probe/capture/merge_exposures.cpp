@@ -151,9 +151,11 @@ PhotographLevels readLevels(const std::vector<std::string>& files, std::optional
     ImageFile read = readImageFile(file, IntegerTexels::Levels);
     const int bits = read.bits;
     const std::optional<Transfer> transfer = read.transfer;
+    Metadata metadata = std::move(read.metadata);
     result.messages.insert(result.messages.end(), read.messages.begin(), read.messages.end());
     auto [image, primaries] = storedColorOf(std::move(read), file);
     if (result.levels.empty()) {
+      result.metadata = std::move(metadata);
       result.bits = bits;
       result.primaries = primaries;
       result.transfer = transfer;

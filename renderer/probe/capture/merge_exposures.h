@@ -45,6 +45,7 @@ struct PhotographLevels {
   int bits = 0;                             // of the files' channels; 0: floats
   float white = 1;                          // the texel of the files that is level 1
   std::vector<size_t> invalid;  // channels of each file that are NaN or negative: level 0
+  Metadata metadata;            // of the first file
   Messages messages;            // of the readers
 
   // As the files state, or else by their bits.

@@ -164,6 +164,7 @@ MergedPhotographs mergePhotographs(const PhotographSeries& series) {
   checkFactorsDiffer(series, merged.factors);
   PhotographLevels photographs = readLevels(series.files, series.white, series.resizes);
   merged.white = photographs.white;
+  merged.metadata = std::move(photographs.metadata);
   const FlatFields flatFields(series, merged.settings, photographs);
   merged.messages = std::move(photographs.messages);
   merged.messages.insert(merged.messages.end(), flatFields.messages().begin(),

@@ -48,6 +48,7 @@ struct MergedPhotographs {
   std::string responseName;
   float white = 1;
   glm::dmat3 toRec709{1};  // from the photographs' channels
+  Metadata metadata;       // of the first photograph
   Messages messages;
 };
 

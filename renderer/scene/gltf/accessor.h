@@ -16,20 +16,12 @@ namespace chromeball {
 // Calls visit(T()), with T the C++ type of an accessor's components.
 template <class Visit>
 auto withComponentType(int componentType, const Visit& visit) {
-  switch (componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return visit(int8_t());
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return visit(uint8_t());
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return visit(int16_t());
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return visit(uint16_t());
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return visit(uint32_t());
-    default:
-      return visit(float());
-  }
+  if (componentType == TINYGLTF_COMPONENT_TYPE_BYTE) return visit(int8_t());
+  if (componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return visit(uint8_t());
+  if (componentType == TINYGLTF_COMPONENT_TYPE_SHORT) return visit(int16_t());
+  if (componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return visit(uint16_t());
+  if (componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) return visit(uint32_t());
+  return visit(float());
 }
 
 // Elements of N components (1 to 4) as floats; integers are normalised if the accessor is.

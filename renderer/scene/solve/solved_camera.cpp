@@ -126,7 +126,7 @@ Messages doubtsAbout(const SolvedCamera& camera, const Bounds& model) {
   }
   const bool isBeside = max.x < 0 || max.y < 0 || min.x > 1 || min.y > 1;
   if (behind == 8 || (behind == 0 && isBeside))
-    return {warning("the camera does not see the model, which lies outside the picture")};
+    return {makeWarning("the camera does not see the model, which lies outside the picture")};
   return {};
 }
 
