@@ -70,19 +70,27 @@ class Child {
     execv(argv[0], argv.data());
     _exit(127);
   }
+  ~Child() {
+    if (!ended_) kill();
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
   // The exit status, once the command has ended.
-  std::optional<int> status() const {
+  std::optional<int> status() {
     int status = 0;
     if (waitpid(id_, &status, WNOHANG) != id_) return {};
+    ended_ = true;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
-  void kill() const {
+  void kill() {
     ::kill(id_, SIGKILL);
     waitpid(id_, nullptr, 0);
+    ended_ = true;
   }
 
  private:
   pid_t id_;
+  bool ended_ = false;
 };
 
 double relMse(const std::string& a, const std::string& b) {
