@@ -33,9 +33,6 @@ bool samplesAreas(const D& d) {
 bool hasOcclusionLayer(const D& d) {
   return d.settings.wantsAov(Aov::AmbientOcclusion) || d.settings.wantsAov(Aov::BentNormal);
 }
-bool wantsOcclusion(const D& d) {
-  return d.settings.integrator == IntegratorKind::AmbientOcclusion || hasOcclusionLayer(d);
-}
 
 bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
 bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
