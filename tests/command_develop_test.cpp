@@ -128,7 +128,7 @@ TEST(CommandDevelop, MappingsAreKeptOrNamed) {
   const std::string ball = folder / "ball.exr", ones = folder / "ones.exr",
                     turned = folder / "turned.exr";
   const auto write = [](const std::string& path, const Metadata& metadata) {
-    writeImage(path, OutputImage{{{"", "RGB", filled(16, 16, 3, 1)}}, metadata});
+    writeImage(path, OutputImage{{{"", "RGB", filled(16, 16, 3, 0.25f)}}, metadata});
   };
   write(ball, {{kMappingAttribute, std::string("mirror-ball")}});
   write(ones, {});
