@@ -2,6 +2,7 @@
 // chromeball image develop, and the setting `develop` of renders.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -130,7 +131,12 @@ TEST(CommandDevelop, MappingsAreKeptOrNamed) {
   const auto write = [](const std::string& path, const Metadata& metadata) {
     writeImage(path, OutputImage{{{"", "RGB", filled(16, 16, 3, 0.25f)}}, metadata});
   };
-  write(ball, {{kMappingAttribute, std::string("mirror-ball")}});
+  Image disc = filled(16, 16, 3, 0.25f);  // black outside, as an angular map is too
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x)
+      if (std::hypot(x - 7.5, y - 7.5) > 8) disc.setRgb(x, y, Rgb(0));
+  writeImage(ball,
+             OutputImage{{{"", "RGB", disc}}, {{kMappingAttribute, std::string("mirror-ball")}}});
   write(ones, {});
   write(turned, {{kEnvmapAttribute, std::string(kEnvmapLatLong)}});
   const auto commandsTo = [&](const std::string& in, const std::string& out) {
@@ -149,8 +155,12 @@ TEST(CommandDevelop, MappingsAreKeptOrNamed) {
       EXPECT_EQ(std::get<std::string>(kept.at(kMappingAttribute)), "mirror-ball");
     }
   for (const auto& command : commandsTo(ball, folder / "out.pfm"))
-    EXPECT_NE(runCommand(command).error.find("has no place for the mapping of"), std::string::npos)
+    EXPECT_NE(runCommand(command).error.find("has no place for its mapping, mirror-ball"),
+              std::string::npos)
         << command[1];
+  writeImage(folder / "lat-long.exr", OutputImage{{{"", "RGB", filled(16, 8, 3, 0.25f)}},
+                                                  {{kMappingAttribute, std::string("lat-long")}}});
+  EXPECT_EQ(run({folder / "lat-long.exr", folder / "out.pfm"}).error, "");  // its shape tells it
   for (const auto& command : commandsTo(turned, folder / "out.exr"))
     EXPECT_NE(runCommand(command).error.find("needs a rotation of 180 degrees"), std::string::npos)
         << command[1];

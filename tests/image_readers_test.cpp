@@ -30,8 +30,6 @@ TEST(ImageReaders, ScarceMemoryAndThreadsAreNoFaultOfTheFile) {
   const auto read = [](const auto& error) { readByLibrary("a.exr", [&] { throw error; }); };
   EXPECT_THROW(read(std::bad_alloc()), RunError);
   EXPECT_THROW(read(std::system_error(EAGAIN, std::generic_category())), RunError);
-  EXPECT_THROW(read(std::runtime_error("Resource temporarily unavailable")), RunError);
-  EXPECT_THROW(read(std::runtime_error("Cannot allocate memory")), RunError);
   EXPECT_THROW(read(std::runtime_error("bad magic")), InputError);
 }
 

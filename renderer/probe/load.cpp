@@ -14,9 +14,9 @@
 namespace chromeball {
 namespace {
 
-const std::string* textOf(const ImageFile& file, const char* attribute) {
-  const auto found = file.metadata.find(attribute);
-  return found == file.metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
+const std::string* textOf(const Metadata& metadata, const char* attribute) {
+  const auto found = metadata.find(attribute);
+  return found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
 }
 
 // The size of the whole map; the file's data window may be a part of it.
@@ -27,25 +27,13 @@ ImageSize sizeOf(const ImageFile& file) {
 
 // The mapping in OpenEXR's `envmap` attribute.
 std::optional<Mapping> openExrMapping(const ImageFile& file) {
-  const std::string* envmap = textOf(file, kEnvmapAttribute);
+  const std::string* envmap = textOf(file.metadata, kEnvmapAttribute);
   if (!envmap) return std::nullopt;
   if (*envmap == kEnvmapLatLong) return Mapping::LatLong;
   const ImageSize size = sizeOf(file);
   const bool isStrip = size.height == 6 * int64_t(size.width);
   if (*envmap == kEnvmapCube && isStrip) return Mapping::VerticalStrip;
   return std::nullopt;
-}
-
-// The mapping that this program has written; other programs may have the same attribute.
-std::optional<Mapping> namedMapping(const ImageFile& file) {
-  const std::string* name = textOf(file, kMappingAttribute);
-  if (!name) return std::nullopt;
-  try {
-    const ImageSize size = sizeOf(file);
-    return parseMapping(*name, size.width, size.height, kMappingAttribute);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
 }
 
 // The map turned by 180 degrees; without resampling if the width is even.
@@ -88,7 +76,8 @@ void measureMaximum(const Image& image, LoadedProbe& probe) {
 
 LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::string_view mapping,
                     std::string_view mappingLocation) {
-  const std::optional<Mapping> stated = openExrMapping(file), named = namedMapping(file);
+  const std::optional<Mapping> stated = openExrMapping(file),
+                               named = namedMapping(file.metadata, sizeOf(file));
   LoadedProbe probe;
   probe.hasIntegerTexels = file.integers;
   probe.messages = std::move(file.messages);
@@ -207,6 +196,16 @@ std::vector<std::string> lightWarnings(const LoadedProbe& probe,
         "{}: {:.2g}% of its texels have the maximum value, {}: brighter light was clipped",
         path.string(), 100 * probe.fractionAtMaximum, probe.maximum)};
   return {};
+}
+
+std::optional<Mapping> namedMapping(const Metadata& metadata, const ImageSize& size) {
+  const std::string* name = textOf(metadata, kMappingAttribute);
+  if (!name) return std::nullopt;
+  try {
+    return parseMapping(*name, size.width, size.height, kMappingAttribute);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 DetectedMapping detectMapping(const Image& image) {

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/message.h"
 #include "image/image.h"
+#include "image/io/read_image.h"
 #include "probe/edit.h"
 #include "probe/mapping.h"
 
@@ -60,5 +62,9 @@ struct DetectedMapping {
 // shows no direction. An angular map and an ideal mirror ball may both be black outside the same
 // disc: their texels do not tell them apart, and the angular map is the usual one.
 DetectedMapping detectMapping(const Image& image);
+
+// The mapping that this program has written with an image of this size; nullopt if there is none.
+// Other programs may have the same attribute.
+std::optional<Mapping> namedMapping(const Metadata& metadata, const ImageSize& size);
 
 }  // namespace chromeball

@@ -90,7 +90,7 @@ void run(const ImageDenoiseArguments& arguments) {
         input, [&](double fraction) { bar.update(fraction); }, never));
   }();
   OutputImage output;
-  output.metadata = keptMetadata(file, arguments.input, arguments.output);
+  output.metadata = keptMetadata(file.metadata, file.image, arguments.input, arguments.output);
   output.placement = file.placement;
   Image noisy = withColor(*findColorAndAlpha(file), color.mean);
   output.layers.push_back({"", noisy.channels == 4 ? "RGBA" : "RGB", std::move(noisy)});

@@ -24,7 +24,7 @@ void run(const ImageDivideArguments& arguments) {
   ImageFile file = openImageFile(arguments.a);
   const Image b = openImage(arguments.b);
   OutputImage output;
-  output.metadata = keptMetadata(file, arguments.a, arguments.output);
+  output.metadata = keptMetadata(file.metadata, file.image, arguments.a, arguments.output);
   std::optional<Image> clipped = layerOf(file, "clipped", arguments.a);
   Image a = colorOf(std::move(file), arguments.a);
   if (a.width != b.width || a.height != b.height)

@@ -48,13 +48,11 @@ Image openImage(const std::filesystem::path& path, IntegerTexels integers) {
   return colorOf(openImageFile(path, integers), path);
 }
 
-Metadata keptMetadata(const ImageFile& file, const std::string& in, const std::string& out) {
-  Metadata kept = file.metadata;
+Metadata keptMetadata(Metadata kept, const Image& map, const std::string& in,
+                      const std::string& out) {
   const std::string extension = lowerExtension(out);
-  if (const auto mapping = kept.find(kMappingAttribute);
-      mapping != kept.end() && extension == ".pfm")
-    if (const auto* name = std::get_if<std::string>(&mapping->second))
-      warn("{}: has no place for the mapping of {}, {}; write an .exr or .hdr", out, in, *name);
+  const auto mapping = namedMapping(kept, {map.width, map.height});
+  if (mapping && extension == ".pfm") warnOfLostMapping(out, map, *mapping);
   const auto envmap = kept.find(kEnvmapAttribute);
   if (envmap == kept.end()) return kept;
   const auto* kind = std::get_if<std::string>(&envmap->second);

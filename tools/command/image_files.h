@@ -17,9 +17,11 @@ namespace chromeball {
 ImageFile openImageFile(const std::filesystem::path& path,
                         IntegerTexels integers = IntegerTexels::Srgb);
 Image openImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb);
-// The file's attributes for the image `out` that is made of it: without `envmap`, which says how a
-// map is turned and which no image of ours has. Warns if that turns the map in `out`.
-Metadata keptMetadata(const ImageFile& file, const std::string& in, const std::string& out);
+// The metadata of an image file, `in`, for the image `out` that is made of it: without `envmap`,
+// which says how a map is turned and which no image of ours has. Warns if that turns the map in
+// `out`, or if a .pfm loses its mapping.
+Metadata keptMetadata(Metadata metadata, const Image& map, const std::string& in,
+                      const std::string& out);
 
 LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option);
 

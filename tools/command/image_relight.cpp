@@ -196,7 +196,7 @@ constexpr auto kOfLight = std::to_array<const char*>({"probe",
 
 // The file's attributes without those that are no longer true, and how it was relit.
 Metadata relitMetadata(const ImageRelightArguments& arguments, const ImageFile& file) {
-  Metadata kept = keptMetadata(file, arguments.in, arguments.out);
+  Metadata kept = keptMetadata(file.metadata, file.image, arguments.in, arguments.out);
   for (const char* name : kOfNoise) kept.erase(name);
   if (!arguments.probe.empty())
     for (const char* name : kOfLight) kept.erase(name);

@@ -172,11 +172,12 @@ constexpr const char* kToRec709 = "photographsToRec709";
 
 // Of the photographs' metadata only what tells their directions is true of the result.
 Metadata metadataOf(const MergedPhotographs& merged, const ProbeMergeArguments& arguments) {
-  ImageFile first;
+  Metadata ofFirst;
   for (const char* name : {kMappingAttribute, kEnvmapAttribute})
     if (const auto found = merged.metadata.find(name); found != merged.metadata.end())
-      first.metadata.insert(*found);
-  Metadata kept = keptMetadata(first, arguments.files.front(), arguments.output);
+      ofFirst.insert(*found);
+  Metadata kept = keptMetadata(std::move(ofFirst), merged.image.radiance, arguments.files.front(),
+                               arguments.output);
   if (merged.toRec709 == glm::dmat3(1)) return kept;
   Matrix44 matrix{};  // rows
   for (int i = 0; i < 4; ++i)
@@ -203,9 +204,10 @@ void merge(const ProbeMergeArguments& arguments) {
   print(merged.messages);
   arguments.json ? printJson(toJson(series, merged)) : print(series, merged);
   if (!arguments.responseOutput.empty()) merged.response.write(arguments.responseOutput);
+  Metadata metadata = metadataOf(merged, arguments);
   print(writeImage(arguments.output, OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
                                                   {"clipped", "", std::move(merged.image.clipped)}},
-                                                 metadataOf(merged, arguments),
+                                                 std::move(metadata),
                                                  {},
                                                  {}}));
 }

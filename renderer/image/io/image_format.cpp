@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/io/image_format.h"
 
-#include <algorithm>
 #include <array>
-#include <cerrno>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -44,10 +42,7 @@ ImageFormat imageFormat(const std::filesystem::path& path) {
 }
 
 bool isOfResources(const std::exception& error) {
-  if (dynamic_cast<const std::system_error*>(&error)) return true;
-  return std::ranges::any_of(std::array{EAGAIN, ENOMEM}, [&](int code) {  // of OpenEXR
-    return std::string_view(error.what()) == std::generic_category().message(code);
-  });
+  return dynamic_cast<const std::system_error*>(&error) != nullptr;
 }
 
 // Text before the path is dropped, since our message starts with the path, unless the path comes
