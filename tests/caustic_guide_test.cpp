@@ -316,14 +316,14 @@ TEST(SlowCausticGuide, ReducesTheVariance) {
   EXPECT_LT(errors.guided, errors.unguided / 1.6);
 }
 
-// The errors are mostly of few pixels: over 24 seeds the gain is 1.5 to 1.9.
+// The errors are mostly of few pixels: the gain is 1.4 over 32 seeds.
 TEST(SlowCausticGuide, FindsALampBehindGlass) {
   Scene scene = balls();
   Material bulb = lambert(Rgb(0));
   bulb.emission = {300, 250, 200};
   addSphere(scene, addMaterial(scene, bulb), {0, 0.3f, 0.9f}, 0.03f, 16);
   const Errors errors = errorsOf(scene, Probe(constantProbe({8, 4}, Rgb(0.05f))), Guiding::On, 8);
-  EXPECT_LT(errors.guided, errors.unguided / 1.25);
+  EXPECT_LT(errors.guided, errors.unguided / 1.1);
 }
 
 TEST(CausticGuide, TheNumberOfThreadsChangesNothing) {

@@ -11,6 +11,7 @@
 #include "lighting/scene_sources.h"
 #include "lighting/suns.h"
 #include "measure/statistics.h"
+#include "probe/irradiance.h"
 #include "probe/synth.h"
 #include "small_scenes.h"
 
@@ -165,6 +166,29 @@ TEST(SlowGuide, AgreesWithTheUnguidedRenderInEveryPixel) {
   EXPECT_GT(lowest, sidak(1e-3, kSize * kSize));
   // The means of whole images are much more precise than any pixel.
   EXPECT_GT(welchTest(Moments::of(means[0]), Moments::of(means[1])), 1e-3);
+}
+
+// A guide learns from the first samples of the pixels that it then serves. Later samples from the
+// same points, which fill the gaps between the first, are .15% too bright here.
+TEST(SlowGuide, LeavesTheMeanUnbiased) {
+  constexpr int kSeeds = 250, kSize = 16;
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
+  const std::vector<vec3> directions = texelDirections({256, 128});
+  const Image radiance = colorImage(256, 128, [&](int x, int y) {
+    return Rgb(3 * std::pow(directions[size_t(y * 256 + x)].x, 4.0f));
+  });
+  const double exact = 0.5 / kPi * exactIrradiance(radiance, std::vector<vec3>{{0, 1, 0}})[0].x;
+  const Probe probe(radiance);
+  std::vector<double> means;
+  for (uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const RenderResult r = renderScene(scene, topCamera(1, 40), probe, "importance",
+                                       guidedRender(kSize, kSize, 64, Guiding::On, seed));
+    EXPECT_GT(r.guidedRegions, 0u);
+    means.push_back(luminance(meanColor(r.film.mean())));
+  }
+  const Moments all = Moments::of(means);
+  EXPECT_LT(std::fabs(all.mean - exact), 3.3 * std::sqrt(all.variance / all.count));  // p = 1e-3
 }
 
 // Light from the walls of a box around the room, whose directions differ from point to point.

@@ -79,7 +79,7 @@ GuideRecords* GuideTraining::recordsOf(size_t tile, uint64_t pixel) {
   return size < maxRecordsOfTile_ ? &records : nullptr;
 }
 
-std::optional<double> GuideTraining::learnLights() {
+std::optional<double> GuideTraining::learnLights(uint32_t samples) {
   if (lightGuiding_ == Guiding::Off) return {};
   size_t count = 0;
   for (const GuideRecords& some : records_) count += some.lights.size();
@@ -94,6 +94,7 @@ std::optional<double> GuideTraining::learnLights() {
     lights_.forget();
     if (count >= kEnough) lightGuiding_ = Guiding::Off;
   }
+  if (lights_.guidedRegions() > 0) taught_ = samples;
   if (hasBegun_ || lights_.guidedRegions() == 0) return {};
   hasBegun_ = true;
   return ratio;
@@ -109,15 +110,20 @@ void GuideTraining::end(const PixelErrors& errors, uint32_t samples) {
     else
       caustics_ = CausticGuide();
   }
+  setTrained();
+}
+
+void GuideTraining::setTrained() {
   records_ = {};
+  taught_ = hasBegun_ ? lastSample_ : 0;
 }
 
 void GuideTraining::archive(Archive& a) {
-  records_ = {};
   a.enumerator(lightGuiding_, Guiding::Auto);
   a(hasBegun_);
   lights_.archive(a);
   caustics_.archive(a);
+  setTrained();
 }
 
 namespace {

@@ -47,22 +47,29 @@ class GuideTraining {
   // The place for records of the pixel's paths; null: none. Thread-safe for different tiles.
   GuideRecords* recordsOf(size_t tile, uint64_t pixel);
 
-  // Trains the guide of light samples with all records so far. If guiding begins: the weight of the
-  // samples so far relative to that of later ones, which have less variance.
-  std::optional<double> learnLights();
+  // Trains the guide of light samples with all records so far, of `samples` per pixel. If guiding
+  // begins: the weight of the samples so far relative to that of later ones, which have less
+  // variance.
+  std::optional<double> learnLights(uint32_t samples);
   // Decides which fraction of bounces is guided, if any. Frees the records. `errors`: the image's
   // so far, with `samples` per pixel. Does nothing if the training has ended before.
   void end(const PixelErrors& errors, uint32_t samples);
   bool hasEnded() const { return records_.empty(); }
+  // How many samples per pixel the guides have learned from; 0: nothing is guided. Later samples of
+  // a pixel must be independent of these: its next points of the same sequence would fill the gaps
+  // between the first, to which the guide has adapted, and be biased.
+  uint32_t taught() const { return taught_; }
   void archive(Archive& a);  // after the end
 
  private:
+  void setTrained();
+
   const World& world_;
   const LightSource& lighting_;
   const RenderSettings& settings_;
   Guiding guiding_, lightGuiding_;  // the latter is off when nothing is to be gained
   bool hasBegun_ = false;           // from then on `Auto` keeps the guide of light samples
-  uint32_t lastSample_;
+  uint32_t lastSample_, taught_ = 0;
   TileGrid tiles_;
   size_t maxRecordsOfTile_;
   double pixelFraction_;

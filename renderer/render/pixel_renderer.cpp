@@ -62,7 +62,8 @@ double PixelRenderer::fractionOfHits() const {
 }
 
 void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to,
-                           const Beam& beam) const {
+                           const Beam& beam, uint32_t randomization) const {
+  const uint64_t blocks = uint64_t(randomization) << 32;  // no render has as many
   const float u = (float(window_.x + x) + 0.5f) / float(settings_.width);
   const float v = (float(window_.y + y) + 0.5f) / float(settings_.height);
   const Beam own = cameraRays_.beamAt(beam, u, v);
@@ -70,8 +71,8 @@ void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uin
     sequence_.forRuns(
         half, samplesOf(half, from), samplesOf(half, to), [&](const SampleSequence::Run& run) {
           worker.context.sampler.startPixel(uint32_t(window_.x + x), uint32_t(window_.y + y),
-                                            Film::kHalves * run.table + uint64_t(half), run.first,
-                                            run.stride);
+                                            blocks + Film::kHalves * run.table + uint64_t(half),
+                                            run.first, run.stride);
           result_.film.add(x, y, half, renderBlock(worker, {x, y, half, run}, own));
         });
 }

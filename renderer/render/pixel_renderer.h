@@ -80,10 +80,10 @@ class PixelRenderer {
 
   PixelWorker makeWorker() const;
 
-  // Adds the shard's part of samples [from, to) of a pixel of the film to the result. Thread-safe
-  // for different pixels.
-  void render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to,
-              const Beam& beam) const;
+  // Adds the shard's part of samples [from, to) of a pixel of the film to the result. Samples with
+  // another `randomization` (32 bits) are independent of them. Thread-safe for different pixels.
+  void render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to, const Beam& beam,
+              uint32_t randomization) const;
 
   // The fraction of camera rays, through a grid of points, that hit something.
   double fractionOfHits() const;

@@ -82,7 +82,7 @@ class Renderer {
     const auto lock = lockLive();
     RenderResult& result = state_.result;
     if (trains_)
-      if (const auto weight = state_.training->learnLights();
+      if (const auto weight = state_.training->learnLights(state_.wanted);
           weight && result.layers.empty()) {  // layers have no weights, and must fit the film
         if (live_) live_->replaced();
         result.film.weigh(*weight);
@@ -101,11 +101,13 @@ class Renderer {
   }
 
   void renderTile(PixelWorker& worker, size_t tile, const Beam& beam) {
+    const uint32_t taught = state_.training ? state_.training->taught() : 0;
     if (live_) live_->beginTile(tile);
     tiles_.forPixels(tile, [&](int x, int y) {
       const uint64_t pixel = uint64_t(y) * uint64_t(tiles_.width) + uint64_t(x);
       worker.context.records = trains_ ? state_.training->recordsOf(tile, pixel) : nullptr;
-      pixels_.render(worker, x, y, countOf(x, y, state_.done), countOf(x, y, state_.wanted), beam);
+      pixels_.render(worker, x, y, countOf(x, y, state_.done), countOf(x, y, state_.wanted), beam,
+                     taught);
     });
     if (live_) live_->endTile(tile);
     world_.scene.checkTexels();
