@@ -166,6 +166,37 @@ TEST(CommandDevelop, MappingsAreKeptOrNamed) {
         << command[1];
 }
 
+// Names in an .exr may hold anything; in an .hdr a line break would begin a line of the header.
+TEST(CommandDevelop, MappingsOfOthersAreNoLinesOfAHeader) {
+  const TemporaryFolder folder;
+  const Image grey = filled(32, 32, 3, 0.25f);
+  for (const std::string& name :
+       {std::string("angular\nEXPOSURE= 1000"), std::string("angular\n\n-Y 1 +X 1\n"),
+        std::string(5000, 'x'), std::string("ANGULAR")}) {
+    const OutputImage named{{{"", "RGB", grey}}, {{kMappingAttribute, name}}};
+    writeImage(folder / "in.exr", named);
+    ASSERT_EQ(run({folder / "in.exr", folder / "out.hdr"}).status, 0);
+    writeImage(folder / "direct.hdr", named);
+    for (const char* file : {"out.hdr", "direct.hdr"})
+      EXPECT_EQ(readImage(folder / file).texels, grey.texels) << name.substr(0, 20);
+    EXPECT_FALSE(readImageFile(folder / "out.hdr").metadata.contains(kMappingAttribute));
+  }
+}
+
+// A .pfm has the picture of the display window, whose shape and corners are looked at.
+TEST(CommandDevelop, MappingsOfWindowsAreKeptOrNamed) {
+  const TemporaryFolder folder;
+  writeImage(folder / "in.exr", OutputImage{{{"", "RGB", filled(40, 40, 3, 0.25f)}},
+                                            {{kMappingAttribute, std::string("mirror-ball")}},
+                                            Placement{12, 12, 64, 64}});
+  EXPECT_NE(
+      run({folder / "in.exr", folder / "out.pfm"})
+          .error.find("has no place for its mapping, mirror-ball, and will be taken for angular"),
+      std::string::npos);
+  ASSERT_EQ(run({folder / "in.exr", folder / "out.hdr"}).status, 0);
+  EXPECT_TRUE(readImageFile(folder / "out.hdr").metadata.contains(kMappingAttribute));
+}
+
 TEST(CommandDevelop, InfinityIsClipped) {
   const TemporaryFolder folder;
   Image image = filled(4, 4, 3, 0.5f);

@@ -187,6 +187,30 @@ TEST(SlowProbeSplit, AndAddSunKeepTheIrradiance) {
   }
 }
 
+// By its shape a map of 96 x 64 texels would be one of six faces.
+TEST(ProbeSplit, AndAddSunNameTheMapping) {
+  const TemporaryFolder folder;
+  Image map = gradientProbe({96, 64}, Rgb(0.4f, 0.5f, 0.7f), {0.2, 0.9, 0.1});
+  addSunDisc(map, glm::normalize(dvec3(0.3, 0.5, 0.6)), 10, dvec3(9, 8, 6));
+  writeImage(folder / "sky.exr",
+             OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, std::string("lat-long")}}});
+  for (const char* extension : {".exr", ".hdr"}) {
+    const std::string rest = folder / ("rest" + std::string(extension)),
+                      back = folder / ("back" + std::string(extension));
+    ASSERT_EQ(runCommand({"probe", "split", folder / "sky.exr", "--suns", folder / "suns.json",
+                          "--rest", rest})
+                  .status,
+              0);
+    ASSERT_EQ(runCommand({"probe", "add-sun", rest, back, "--lights", folder / "suns.json"}).status,
+              0);
+    EXPECT_EQ(loadProbe(rest).mapping, Mapping::LatLong);
+    EXPECT_EQ(loadProbe(back).mapping, Mapping::LatLong);
+  }
+  const CommandResult lost = runCommand({"probe", "add-sun", folder / "rest.exr",
+                                         folder / "back.pfm", "--lights", folder / "suns.json"});
+  EXPECT_NE(lost.error.find("has no place for its mapping, lat-long"), std::string::npos);
+}
+
 TEST(ProbeSplit, WritesTheDiameterThatIsAskedFor) {
   const TemporaryFolder folder;
   writeImage(folder / "sky.exr", skyWithSun());

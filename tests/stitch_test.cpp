@@ -12,6 +12,7 @@
 #include "image/image.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
+#include "instrumented.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
@@ -108,6 +109,8 @@ TEST(Stitch, DirectionsThatNoTileSeesAreCounted) {
   EXPECT_EQ(stitched.latLong.rgb(128, 64), Rgb(2));
   EXPECT_EQ(stitched.latLong.rgb(0, 64), Rgb(0));
   EXPECT_EQ(stitchedSize(tiles).height, 80) << "pi / (2 tan(45 degrees) / 50)";
+  const std::vector<Tile> fine{{"tile", Image(64, 64, 3), Rotation(), 0.01}};
+  EXPECT_EQ(stitchedSize(fine).height, 8192);
 }
 
 TEST(SlowStitch, GainsAreFoundUpToACommonOne) {
@@ -213,6 +216,18 @@ TEST_F(CommandStitch, ReadsAListAndWritesRefinedPoses) {
   EXPECT_EQ(again.status, 0) << again.error;
   const Image a = readImage(path("out.exr")), b = readImage(path("again.exr"));
   for (size_t i = 0; i < a.texels.size(); ++i) ASSERT_NEAR(a.texels[i], b.texels[i], 1e-4f);
+}
+
+TEST_F(CommandStitch, ChecksTheMemoryOfItsOwnSize) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
+  writeImage(path("n.exr"), Image(16, 16, 3));
+  const CommandResult result =
+      runExecutable({"probe", "stitch", list("fov = 0.01\n[[tile]]\nfile = 'n.exr'\nyaw = 0\n"),
+                     "-o", path("out.exr")},
+                    "", SIGINT, {.memory = size_t(4) << 30});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.error.find("16384 x 8192 texels with 3 channels take"), std::string::npos)
+      << result.error;
 }
 
 TEST_F(CommandStitch, RefinesASingleTileToItself) {

@@ -2,6 +2,7 @@
 // Sun extraction: the extracted suns, and the energy of suns plus remainder.
 #include <gtest/gtest.h>
 
+#include "base/hash.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"
@@ -153,6 +154,25 @@ TEST(SunExtraction, KeepsEnergyForEveryNormal) {
     ASSERT_EQ(extraction.suns.size(), 1u);
     EXPECT_LT(degreesBetween(extraction.suns[0].direction, towards), 0.05);
     EXPECT_LT(energyError(map, extraction), 0.1);
+  }
+}
+
+// The disc has the spread of the removed texels, not their shape.
+TEST(SunExtraction, KeepsEnergyInCoarseMaps) {
+  struct Bound {
+    ImageSize size;
+    double percent;
+  };
+  for (const auto& [size, percent] : {Bound{{256, 128}, 0.5}, Bound{{64, 32}, 2}}) {
+    for (int i = 0; i < 40; ++i) {
+      const double elevation = 5 + 80 * toUnit(uint32_t(hash(uint64_t(i), 1))),
+                   azimuth = 360 * toUnit(uint32_t(hash(uint64_t(i), 2))) - 180;
+      SCOPED_TRACE(testing::Message() << size.width << " " << elevation << " " << azimuth);
+      const Image map = clearSkyProbe(size, {.sunElevation = elevation, .sunAzimuth = azimuth});
+      const SunExtraction extraction = extractSuns(map);
+      ASSERT_EQ(extraction.suns.size(), 1u);
+      EXPECT_LT(energyError(map, extraction), percent);
+    }
   }
 }
 

@@ -258,7 +258,7 @@ AssemblyTarget parseTarget(const AssembleArguments& arguments,
   const ImageSize natural = assemblySize(views);
   if (arguments.size.empty()) {
     const Mapping mapping = parseMapping(arguments.to, "--to");
-    return {mapping, sizeFor(mapping, natural), natural};
+    return {mapping, checkedSize(arguments.out, sizeFor(mapping, natural)), natural};
   }
   const ImageSize size = checkedSize(arguments.out, parseSize(arguments.size, "--size"));
   const std::optional<Mapping> mapping =

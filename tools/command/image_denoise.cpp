@@ -90,14 +90,14 @@ void run(const ImageDenoiseArguments& arguments) {
         input, [&](double fraction) { bar.update(fraction); }, never));
   }();
   OutputImage output;
-  output.metadata = keptMetadata(file.metadata, file.image, arguments.input, arguments.output);
+  output.metadata = keptMetadata(file.metadata, arguments.input, arguments.output);
   output.placement = file.placement;
   Image noisy = withColor(*findColorAndAlpha(file), color.mean);
   output.layers.push_back({"", noisy.channels == 4 ? "RGBA" : "RGB", std::move(noisy)});
   const double before = metadataNumber(output.metadata, "noise").value_or(NAN);
   const double noise = addDenoised(std::move(denoised), before, output);
   if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
-  print(writeInWindow(arguments.output, std::move(output), arguments.input));
+  writeKept(arguments.output, std::move(output), arguments.input);
   if (!arguments.quiet)
     fmt::print("noise {}: {}\n",
                std::isfinite(noise) ? fmt::format("about {:.2f}%", 100 * noise) : "unknown",

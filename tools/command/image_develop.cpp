@@ -128,7 +128,7 @@ Input readInput(const ImageDevelopArguments& arguments, const DevelopSettings& s
   Input input;
   input.frame = frameOf(arguments, file, settings);
   if (settings.lens) input.depth = depthOf(file, arguments.in);
-  input.image.metadata = keptMetadata(file.metadata, file.image, arguments.in, arguments.out);
+  input.image.metadata = keptMetadata(file.metadata, arguments.in, arguments.out);
   if (!settings.isEmpty()) input.image.metadata["developed"] = historyOf(arguments, file.metadata);
   input.otherLayers = layerNames(file);
   input.image.placement = file.placement;
@@ -150,7 +150,7 @@ void run(const ImageDevelopArguments& arguments) {
   if (!input.otherLayers.empty() && lowerExtension(arguments.out) == ".exr")
     note("{}: its colour alone is developed and written; without the layers {}", arguments.in,
          fmt::join(input.otherLayers, ", "));
-  print(writeInWindow(arguments.out, std::move(input.image), arguments.in, transform));
+  writeKept(arguments.out, std::move(input.image), arguments.in, transform);
 }
 
 }  // namespace

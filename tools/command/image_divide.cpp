@@ -24,7 +24,7 @@ void run(const ImageDivideArguments& arguments) {
   ImageFile file = openImageFile(arguments.a);
   const Image b = openImage(arguments.b);
   OutputImage output;
-  output.metadata = keptMetadata(file.metadata, file.image, arguments.a, arguments.output);
+  output.metadata = keptMetadata(file.metadata, arguments.a, arguments.output);
   std::optional<Image> clipped = layerOf(file, "clipped", arguments.a);
   Image a = colorOf(std::move(file), arguments.a);
   if (a.width != b.width || a.height != b.height)
@@ -41,7 +41,7 @@ void run(const ImageDivideArguments& arguments) {
         arguments.a, invalid, arguments.b);
   output.layers.push_back({"", "RGB", std::move(a)});
   if (clipped) output.layers.push_back({"clipped", "", *std::move(clipped)});
-  print(writeImage(arguments.output, output));
+  writeKept(arguments.output, std::move(output), arguments.a);
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/file.h"
 #include "image/io/radiance_hdr.h"
-#include "image/io/write_image.h"
 #include "image/size_limits.h"
 #include "messages.h"
 #include "probe/load.h"
@@ -48,21 +48,31 @@ Image openImage(const std::filesystem::path& path, IntegerTexels integers) {
   return colorOf(openImageFile(path, integers), path);
 }
 
-Metadata keptMetadata(Metadata kept, const Image& map, const std::string& in,
-                      const std::string& out) {
-  const std::string extension = lowerExtension(out);
-  const auto mapping = namedMapping(kept, {map.width, map.height});
-  if (mapping && extension == ".pfm") warnOfLostMapping(out, map, *mapping);
+Metadata keptMetadata(Metadata kept, const std::string& in, const std::string& out) {
   const auto envmap = kept.find(kEnvmapAttribute);
   if (envmap == kept.end()) return kept;
   const auto* kind = std::get_if<std::string>(&envmap->second);
-  if (kind && *kind == kEnvmapLatLong && extension != ".png")
+  if (kind && *kind == kEnvmapLatLong && lowerExtension(out) != ".png")
     warn(
         "{}: its `envmap` attribute, which puts +Z in the centre, is not kept: as a "
         "probe, {} needs a rotation of 180 degrees",
         in, out);
   kept.erase(envmap);
   return kept;
+}
+
+void writeKept(const std::string& out, OutputImage output, const std::string& in,
+               const DisplayTransform& transform) {
+  const std::string kind = lowerExtension(out);
+  if (kind != ".exr") {
+    Image& color = output.layers.front().image;
+    color = inDisplayWindow(std::move(color), std::exchange(output.placement, {}), in);
+    const auto mapping = namedMapping(output.metadata, {color.width, color.height});
+    output.metadata.erase(kMappingAttribute);
+    if (mapping) output.metadata[kMappingAttribute] = mappingName(*mapping);
+    if (mapping && kind == ".pfm") warnOfLostMapping(out, color, *mapping);
+  }
+  print(writeImage(out, output, transform));
 }
 
 LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option) {
@@ -72,6 +82,7 @@ LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::st
 }
 
 ImageSize checkedSize(const std::string& file, const ImageSize& size, double copies) {
+  checkImageSize(file, size.width, size.height, 3);
   checkImageMemory(file, size.width, size.height, 3, sizeof(float), copies);
   return size;
 }

@@ -8,6 +8,7 @@
 
 #include "image/image.h"
 #include "image/io/read_image.h"
+#include "image/io/write_image.h"
 #include "probe/load.h"
 #include "probe/mapping.h"
 
@@ -19,14 +20,21 @@ ImageFile openImageFile(const std::filesystem::path& path,
 Image openImage(const std::filesystem::path& path, IntegerTexels integers = IntegerTexels::Srgb);
 // The metadata of an image file, `in`, for the image `out` that is made of it: without `envmap`,
 // which says how a map is turned and which no image of ours has. Warns if that turns the map in
-// `out`, or if a .pfm loses its mapping.
-Metadata keptMetadata(Metadata metadata, const Image& map, const std::string& in,
-                      const std::string& out);
+// `out`.
+Metadata keptMetadata(Metadata metadata, const std::string& in, const std::string& out);
+
+// The same as writeImage(), for an image made from the data of the file `in`, with keptMetadata():
+// all formats but .exr get its display window (inDisplayWindow(), read_image.h). A mapping that is
+// none of parseMapping() for this size stays in an .exr alone. Warns of a mapping that a .pfm
+// loses.
+void writeKept(const std::string& out, OutputImage output, const std::string& in,
+               const DisplayTransform& transform = {});
 
 LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option);
 
-// Returns the size of a map to make for `file`. Throws InputError if `copies` of it, including
-// those for writing, take more memory than the process may use.
+// Returns the size of a map to make for `file`. Throws InputError if it exceeds the limit of an
+// image, or if `copies` of it, including those for writing, take more memory than the process may
+// use.
 ImageSize checkedSize(const std::string& file, const ImageSize& size, double copies = 3);
 
 // Copies of a map of irradiance: the direction and the horizon of each texel are kept.

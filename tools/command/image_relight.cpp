@@ -196,7 +196,7 @@ constexpr auto kOfLight = std::to_array<const char*>({"probe",
 
 // The file's attributes without those that are no longer true, and how it was relit.
 Metadata relitMetadata(const ImageRelightArguments& arguments, const ImageFile& file) {
-  Metadata kept = keptMetadata(file.metadata, file.image, arguments.in, arguments.out);
+  Metadata kept = keptMetadata(file.metadata, arguments.in, arguments.out);
   for (const char* name : kOfNoise) kept.erase(name);
   if (!arguments.probe.empty())
     for (const char* name : kOfLight) kept.erase(name);
@@ -229,7 +229,7 @@ void runProbe(const ImageRelightArguments& arguments, const DisplayTransform& tr
   output.metadata = relitMetadata(arguments, file);
   output.placement = file.placement;
   output.layers.push_back(withAlphaOf(file, color));
-  print(writeInWindow(arguments.out, std::move(output), arguments.in, transform));
+  writeKept(arguments.out, std::move(output), arguments.in, transform);
 }
 
 void runGains(const ImageRelightArguments& arguments, const DisplayTransform& transform) {
@@ -246,7 +246,7 @@ void runGains(const ImageRelightArguments& arguments, const DisplayTransform& tr
   for (size_t i = 0; i < gains.size(); ++i)
     output.layers.push_back(
         {std::string(kPrefix) + groups.names[i], "RGB", std::move(groups.layers[i])});
-  print(writeInWindow(arguments.out, std::move(output), arguments.in, transform));
+  writeKept(arguments.out, std::move(output), arguments.in, transform);
 }
 
 void checkEffects(const ImageRelightArguments& arguments, const Command& command) {

@@ -33,7 +33,7 @@ std::pair<Mapping, ImageSize> target(const ProbeConvertArguments& arguments, con
       return {*mapping, size};
   }
   const Mapping mapping = parseMapping(arguments.to, "--to");
-  return {mapping, sizeFor(mapping, {latLong.width, latLong.height})};
+  return {mapping, checkedSize(arguments.out, sizeFor(mapping, {latLong.width, latLong.height}))};
 }
 
 void warnOfSource(const LoadedProbe& probe, const ProbeConvertArguments& arguments) {

@@ -176,8 +176,7 @@ Metadata metadataOf(const MergedPhotographs& merged, const ProbeMergeArguments& 
   for (const char* name : {kMappingAttribute, kEnvmapAttribute})
     if (const auto found = merged.metadata.find(name); found != merged.metadata.end())
       ofFirst.insert(*found);
-  Metadata kept = keptMetadata(std::move(ofFirst), merged.image.radiance, arguments.files.front(),
-                               arguments.output);
+  Metadata kept = keptMetadata(std::move(ofFirst), arguments.files.front(), arguments.output);
   if (merged.toRec709 == glm::dmat3(1)) return kept;
   Matrix44 matrix{};  // rows
   for (int i = 0; i < 4; ++i)
@@ -205,11 +204,13 @@ void merge(const ProbeMergeArguments& arguments) {
   arguments.json ? printJson(toJson(series, merged)) : print(series, merged);
   if (!arguments.responseOutput.empty()) merged.response.write(arguments.responseOutput);
   Metadata metadata = metadataOf(merged, arguments);
-  print(writeImage(arguments.output, OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
-                                                  {"clipped", "", std::move(merged.image.clipped)}},
-                                                 std::move(metadata),
-                                                 {},
-                                                 {}}));
+  writeKept(arguments.output,
+            OutputImage{{{"", "RGB", std::move(merged.image.radiance)},
+                         {"clipped", "", std::move(merged.image.clipped)}},
+                        std::move(metadata),
+                        {},
+                        {}},
+            arguments.files.front());
 }
 
 glm::dmat3 photographsToRec709(const ImageFile& file, const std::string& path) {

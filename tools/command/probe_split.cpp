@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "commands.h"
 #include "image/io/output_file.h"
-#include "image/io/write_image.h"
+#include "image_files.h"
 #include "lighting/export/light_file.h"
 #include "lighting/export/light_list.h"
 #include "messages.h"
@@ -41,7 +41,7 @@ void splitProbe(const SplitArguments& arguments) {
   for (const Sun& sun : extraction.suns)
     rig.lights.push_back(
         {vec3(sun.direction), Rgb(sun.irradiance), float(arguments.angle.value_or(sun.angle))});
-  print(writeImage(arguments.rest, extraction.remainder));
+  writeProbe(arguments.rest, extraction.remainder);
   writeLights(arguments.suns, rig);
   fmt::print("suns        {}\n", extraction.suns.size());
   for (const DirectionalLight& light : rig.lights)
@@ -73,7 +73,7 @@ void addSuns(const AddArguments& arguments) {
     if (!std::isfinite(texel))
       throwInput("{}: with {} a texel exceeds the largest float, 3.4e38", arguments.lights,
                  arguments.probe.file);
-  print(writeImage(arguments.out, map));
+  writeProbe(arguments.out, map);
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ void run(const ProbeStitchArguments& arguments) {
   if (arguments.refine) refine(entries, tiles);
   const std::vector<double> gains = gainsOf(arguments, tiles);
   std::optional<BusyLine> busy("stitching");
-  if (arguments.size.empty()) size = stitchedSize(tiles);
+  if (arguments.size.empty()) size = checkedSize(arguments.out, stitchedSize(tiles));
   const StitchedProbe probe = stitch(tiles, gains, size);
   busy.reset();
   constexpr double kGap = 1e-5;

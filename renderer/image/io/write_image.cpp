@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "image/io/exr_rows.h"
 #include "image/io/pfm.h"
 #include "image/io/radiance_hdr.h"
@@ -33,10 +34,12 @@ Image repeated(const Image& grey) {
   return color;
 }
 
+// A line break in the name would end the comment, and a long one the header.
 HdrComments mappingOf(const Metadata& metadata) {
   const auto found = metadata.find(kMappingAttribute);
   const auto* name = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
-  return name ? HdrComments{{kMappingAttribute, *name}} : HdrComments{};
+  if (!name || printableName(*name) != *name) return {};
+  return {{kMappingAttribute, *name}};
 }
 
 // The formats that hold only the colour.
@@ -183,15 +186,6 @@ Messages writeImage(const fs::path& path, const OutputImage& output,
     return writeColor(path, output.layers.front().image, transform, output.metadata);
   writeExr(path, output);
   return {};
-}
-
-Messages writeInWindow(const fs::path& path, OutputImage output, const fs::path& source,
-                       const DisplayTransform& transform) {
-  if (output.placement && lowerExtension(path) != ".exr") {
-    Image& color = output.layers.front().image;
-    color = inDisplayWindow(std::move(color), output.placement, source);
-  }
-  return writeImage(path, output, transform);
 }
 
 Messages writeImage(const fs::path& path, const Image& color, const DisplayTransform& transform) {

@@ -41,20 +41,15 @@ void checkImageName(const std::filesystem::path& path);
 void checkWritable(const std::filesystem::path& path);
 
 // .exr: all layers and the metadata; float32, scanlines, ZIP. .hdr and .pfm: the colour, and in
-// .hdr the metadata's `mapping`. .png: the
-// colour after `transform`, 8 bits, sRGB, with unassociated alpha (the layer's colour is associated
-// and is divided by alpha first). Returns warnings of what the file cannot hold (lostLight()).
+// .hdr the metadata's `mapping` if it is a printable name. .png: the colour after `transform`, 8
+// bits, sRGB, with unassociated alpha (the layer's colour is associated and is divided by alpha
+// first). Returns warnings of what the file cannot hold (lostLight()).
 // Throws as checkWritable() does, and RunError if writing fails.
 Messages writeImage(const std::filesystem::path& path, const OutputImage& output,
                     const DisplayTransform& transform = {});
 
 // The bytes of that .png. An image of one channel is grey.
 std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform);
-
-// The same for an image made from the data of `source`: all formats but .exr get its display window
-// (inDisplayWindow(), read_image.h).
-Messages writeInWindow(const std::filesystem::path& path, OutputImage output,
-                       const std::filesystem::path& source, const DisplayTransform& transform = {});
 
 // Writes only the colour.
 Messages writeImage(const std::filesystem::path& path, const Image& color,

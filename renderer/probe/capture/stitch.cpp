@@ -84,9 +84,10 @@ StitchedProbe stitch(const std::vector<Tile>& tiles, const std::vector<double>& 
 }
 
 ImageSize stitchedSize(const std::vector<Tile>& tiles) {
+  constexpr double kMostRows = 8192;
   double finest = kPiD;
   for (const Tile& tile : tiles) finest = std::min(finest, TileView(tile).pixelAngle());
-  const int height = 2 * std::clamp(int(std::ceil(kPiD / finest / 2)), 1, 1 << 14);
+  const int height = 2 * int(std::clamp(std::ceil(kPiD / finest / 2), 1.0, kMostRows / 2));
   return {2 * height, height};
 }
 

@@ -63,7 +63,8 @@ struct StitchedProbe {
 StitchedProbe stitch(const std::vector<Tile>& tiles, const std::vector<double>& gains,
                      const ImageSize& size);
 
-// The size of a lat-long map whose texels are no coarser than the pixels in the middle of a tile.
+// The size of a lat-long map whose texels are no coarser than the pixels in the middle of a tile,
+// with at most 8192 rows.
 ImageSize stitchedSize(const std::vector<Tile>& tiles);
 
 // Factors that make the tiles agree where they overlap: least squares over the logarithms of all
