@@ -87,6 +87,19 @@ TEST(ProbeFile, ConvertWarnsOfALostMapping) {
   }
 }
 
+TEST(ProbeFile, AMappingThatIsNotUsedIsNamed) {
+  const TemporaryFolder folder;
+  for (const auto& [name, isUsed] :
+       {std::pair("angular", true), {"ANGULAR", false}, {"cube-cross", false}}) {
+    writeImage(folder / "p.exr", OutputImage{{{"", "RGB", constantProbe({32, 32}, Rgb(1))}},
+                                             {{kMappingAttribute, std::string(name)}}});
+    const std::string said = runCommand({"probe", "info", folder / "p.exr"}).error;
+    EXPECT_EQ(said.find(fmt::format("its `mapping`, {}, is unknown", name)) == std::string::npos,
+              isUsed)
+        << said;
+  }
+}
+
 TEST(ProbeFile, InvalidTexelsAreRepairedAndReported) {
   const TemporaryFolder folder;
   Image image = constantProbe({16, 8}, Rgb(1));

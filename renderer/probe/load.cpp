@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "image/io/read_image.h"
 #include "probe/convert.h"
 
@@ -78,6 +79,8 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
                     std::string_view mappingLocation) {
   const std::optional<Mapping> stated = openExrMapping(file),
                                named = namedMapping(file.metadata, sizeOf(file));
+  const std::string* name = textOf(file.metadata, kMappingAttribute);
+  const std::string otherName = name ? printableName(*name) : "";
   LoadedProbe probe;
   probe.hasIntegerTexels = file.integers;
   probe.messages = std::move(file.messages);
@@ -95,6 +98,9 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
     probe.detected = true;
     probe.certain = detected.certain;
     probe.reason = detected.reason;
+    if (!otherName.empty() && !stated && !named)
+      addNote(probe.messages, "{}: its `mapping`, {}, is unknown, or not one of {} x {} texels",
+              path.string(), otherName, image.width, image.height);
   }
 
   const bool isLatLong = probe.mapping == Mapping::LatLong;

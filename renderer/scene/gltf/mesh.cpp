@@ -71,7 +71,9 @@ void readTextureCoordinates(GltfFile& file, AttributeReader& attributes, const M
     const std::string name = fmt::format("TEXCOORD_{}", set);
     mesh.uvs[set] = attributes.read(name, readVectors<2>);
     if (!mesh.uvs[set].empty()) continue;
-    file.warnOnce(fmt::format("a textured primitive has no {}; (0, 0) is used", name));
+    file.warnOnce(fmt::format(
+        "a primitive has no {}, which its material needs (textures, anisotropy); (0, 0) is used",
+        name));
     mesh.uvs[set].assign(mesh.positions.size(), vec2(0));
   }
 }
