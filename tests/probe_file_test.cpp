@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "image/io/write_image.h"
+#include "instrumented.h"
 #include "math/icosphere.h"
 #include "probe/convert.h"
 #include "probe/info.h"
@@ -85,6 +86,20 @@ TEST(ProbeFile, ConvertWarnsOfALostMapping) {
     EXPECT_FALSE(warns(name, "lat-long", "256x128"));
     EXPECT_FALSE(warns(name, "cube-cross", "192x256"));
   }
+}
+
+// A small picture of few degrees is converted to a map of 1.6 GB.
+TEST(ProbeFile, TheMemoryOfItsMapIsChecked) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
+  const TemporaryFolder folder;
+  writeImage(folder / "p.exr",
+             OutputImage{{{"", "RGB", constantProbe({64, 64}, Rgb(1))}},
+                         {{kMappingAttribute, std::string("fisheye:1:equidistant")}}});
+  const CommandResult result =
+      runExecutable({"probe", "info", folder / "p.exr"}, "", SIGINT, {.memory = size_t(1) << 30});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.error.find("p.exr: 16384 x 8192 texels with 3 channels take"), std::string::npos)
+      << result.error;
 }
 
 TEST(ProbeFile, AMappingThatIsNotUsedIsNamed) {

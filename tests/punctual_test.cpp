@@ -352,14 +352,23 @@ TEST(GltfLights, BlockingByRefractiveBodiesIsReported) {
     addTriangle(w, {{"material", 0}});
     json extensions = {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}};
     if (volume) extensions["KHR_materials_volume"] = {{"thicknessFactor", 1}};
-    w.add("materials", {{"extensions", extensions}});
+    w.add("materials",
+          {{"pbrMetallicRoughness", {{"roughnessFactor", 0}}}, {"extensions", extensions}});
     w.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
     w.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
     const TemporaryFolder folder;
     const CommandResult r =
         runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size", "8x8", "--samples", "2"});
     EXPECT_EQ(r.status, 0) << r.error;
-    EXPECT_EQ(r.error.find("do not pass bodies of glass") != std::string::npos, volume) << r.error;
+    EXPECT_EQ(r.error.find("do not pass smooth bodies") != std::string::npos, volume) << r.error;
+    const CommandResult straight =
+        runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size", "8x8", "--samples", "2",
+                    "--glass-shadows", "straight"});
+    EXPECT_EQ(straight.error.find("do not pass"), std::string::npos) << straight.error;
+    w.root["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.5;
+    const CommandResult rough =
+        runCommand({"render", w.save(), "-o", folder / "a.pfm", "--size", "8x8", "--samples", "2"});
+    EXPECT_EQ(rough.error.find("do not pass"), std::string::npos) << rough.error;
   }
 }
 

@@ -65,11 +65,11 @@ Sample SurfaceLayers::sample(const CameraSample& camera, PathContext& context) c
   return found;
 }
 
-void SurfaceLayers::sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample,
-                               PathContext& context, std::span<Sample> samples) const {
-  picture_.sampleMany(cameras, firstSample, context, samples);
+void SurfaceLayers::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+                               std::span<Sample> samples) const {
+  picture_.sampleMany(cameras, context, samples);
   for (size_t i = 0; i < cameras.size(); ++i) {
-    context.sampler.startSample(firstSample + uint32_t(i));
+    cameras[i].start(context.sampler);
     const auto defect = measure(cameras[i], context);
     if (!samples[i].defect) samples[i].defect = defect;
   }

@@ -52,7 +52,7 @@ class SurfaceLayers : public Integrator {
                 const Occlusion& occlusion);
 
   Sample sample(const CameraSample& camera, PathContext& context) const override;
-  void sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample, PathContext& context,
+  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
                   std::span<Sample> samples) const override;
   std::vector<Accumulation> layers() const override { return picture_.layers(); }
   std::vector<std::string> groups() const override { return picture_.groups(); }

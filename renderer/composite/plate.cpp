@@ -11,7 +11,12 @@
 namespace chromeball {
 
 Image readPlate(const std::string& path, Messages* messages) {
-  Image plate = readImage(path, IntegerTexels::Srgb, messages);
+  ImageFile file = readImageFile(path);
+  if (messages) {
+    messages->insert(messages->end(), file.messages.begin(), file.messages.end());
+    if (file.integers) addNote(*messages, "{}: {}", path, decodingInWords(file));
+  }
+  Image plate = colorOf(std::move(file), path);
   size_t invalid = 0;
   int x = 0, y = 0;
   for (int row = plate.height - 1; row >= 0; --row)

@@ -9,7 +9,8 @@ std::vector<Setting> compositeRows() {
       {.key = "plate",
        .type = File,
        .absent = "required but for a shadow catcher",
-       .help = "The photograph: linear .exr, .hdr, .pfm; others are decoded from sRGB."},
+       .help = "The photograph. Floats are linear; integers are decoded from sRGB unless the file "
+               "states another curve."},
       {.key = "local_scene",
        .type = Compound,
        .form = "a node's name, or several",

@@ -67,27 +67,42 @@ constexpr int tabulated(int vertices) {
 }
 }  // namespace dimension
 
-// Random numbers for the samples of one pixel. All pixels share the table's points; each pixel and
+// What distinguishes the numbers of a pixel: of a block of its samples, sample i of which is point
+// first + i stride of the table.
+struct PixelNumbers {
+  uint64_t key = 0;
+  uint32_t first = 0, stride = 1;
+  std::vector<uint32_t> shifts;  // by dimension
+};
+
+// Random numbers for the samples of pixels. All pixels share the table's points; each pixel and
 // dimension XORs them with its own random number (a random digital shift), which preserves their
 // stratification and makes each point uniform. A block is as many samples as the table has points;
 // every block has its own shifts, and so is an independent randomisation.
 class PixelSampler {
  public:
   PixelSampler(const SobolTable& table, uint64_t seed)
-      : table_(&table), dimensions_(table.dimensions()), seed_(seed), shifts_(dimensions_) {}
+      : table_(&table), dimensions_(table.dimensions()), seed_(seed) {}
 
-  // Sample i of the pixel is point first + i stride of the block.
-  void startPixel(uint32_t x, uint32_t y, uint64_t block, uint32_t first = 0, uint32_t stride = 1) {
-    first_ = first, stride_ = stride;
-    key_ = hash(seed_, uint64_t(y) << 32 | x, block);
-    for (size_t d = 0; d < shifts_.size(); d += 2) {
-      const uint64_t bits = hash(key_ + d);
-      shifts_[d] = uint32_t(bits);
-      shifts_[d + 1] = uint32_t(bits >> 32);
+  void startPixel(uint32_t x, uint32_t y, uint64_t block) { set(own_, x, y, block); }
+  void startSample(uint32_t i) { startSample(own_, i); }
+  const PixelNumbers& pixel() const { return own_; }
+
+  // The same for several pixels in turn, whose numbers the caller keeps.
+  void set(PixelNumbers& pixel, uint32_t x, uint32_t y, uint64_t block, uint32_t first = 0,
+           uint32_t stride = 1) const {
+    pixel.first = first, pixel.stride = stride;
+    pixel.key = hash(seed_, uint64_t(y) << 32 | x, block);
+    pixel.shifts.resize(size_t(dimensions_));
+    for (size_t d = 0; d < pixel.shifts.size(); d += 2) {
+      const uint64_t bits = hash(pixel.key + d);
+      pixel.shifts[d] = uint32_t(bits);
+      pixel.shifts[d + 1] = uint32_t(bits >> 32);
     }
   }
-  void startSample(uint32_t i) {
-    index_ = first_ + i * stride_;
+  void startSample(const PixelNumbers& pixel, uint32_t i) {
+    shifts_ = pixel.shifts.data(), key_ = pixel.key;
+    index_ = pixel.first + i * pixel.stride;
     point_ = table_->point(index_);
     base_ = 0;
   }
@@ -127,10 +142,11 @@ class PixelSampler {
  private:
   const SobolTable* table_;
   int dimensions_;
-  uint64_t seed_, key_ = 0;
-  std::vector<uint32_t> shifts_;
+  uint64_t seed_;
+  PixelNumbers own_;
+  uint64_t key_ = 0;                  // of the pixel
+  const uint32_t* shifts_ = nullptr;  // of the pixel
   const uint32_t* point_ = nullptr;
-  uint32_t first_ = 0, stride_ = 1;
   uint32_t index_ = 0;  // in the block
   int base_ = 0;
 };

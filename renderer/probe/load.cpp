@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "image/io/read_image.h"
+#include "image/size_limits.h"
 #include "probe/convert.h"
 
 namespace chromeball {
@@ -112,6 +113,8 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
     probe.latLong = std::move(image);
   } else {
     const ImageSize size = latLongSize(probe.mapping, {image.width, image.height});
+    checkImageSize(path, size.width, size.height, 3);
+    checkImageMemory(path, size.width, size.height, 3);
     probe.latLong = convert(image, probe.mapping, Mapping::LatLong, size);
   }
   return probe;

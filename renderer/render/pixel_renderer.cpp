@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <limits>
 
 #include "transport/integrator.h"
@@ -70,22 +71,62 @@ void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uin
   for (int half = 0; half < Film::kHalves; ++half)
     sequence_.forRuns(
         half, samplesOf(half, from), samplesOf(half, to), [&](const SampleSequence::Run& run) {
-          worker.context.sampler.startPixel(uint32_t(window_.x + x), uint32_t(window_.y + y),
-                                            blocks + Film::kHalves * run.table + uint64_t(half),
-                                            run.first, run.stride);
-          result_.film.add(x, y, half, renderBlock(worker, {x, y, half, run}, own));
+          assert(worker.blockCount < worker.blocks.size());
+          SampleBlock& block = worker.blocks[worker.blockCount++];
+          block.x = x, block.y = y, block.half = half, block.run = run, block.sums = {};
+          worker.context.sampler.set(
+              block.numbers, uint32_t(window_.x + x), uint32_t(window_.y + y),
+              blocks + Film::kHalves * run.table + uint64_t(half), run.first, run.stride);
+          addBlock(worker, own);
         });
 }
 
-// Generates and traces the camera rays of consecutive samples.
-void PixelRenderer::traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
-                                    std::span<CameraSample> cameras) const {
+// Takes the samples of the last block; those that fill the arrays are traced with all before.
+void PixelRenderer::addBlock(PixelWorker& worker, const Beam& beam) const {
+  const bool wantsFirst = !result_.aovs.empty() || !result_.features.empty();
+  for (uint32_t i = 0; i < worker.blocks[worker.blockCount - 1].run.count; ++i) {
+    if (worker.sampleCount == PixelWorker::kMaxSamples) {
+      traceSamples(worker);
+      endBlocks(worker, worker.blockCount - 1);
+    }
+    const SampleBlock& block = worker.blocks[worker.blockCount - 1];
+    const size_t k = worker.sampleCount++;
+    if (wantsFirst) worker.firsts[k] = {};
+    worker.blockOf[k] = uint32_t(worker.blockCount - 1);
+    worker.cameras[k] = {.x = window_.x + block.x,
+                         .y = window_.y + block.y,
+                         .half = block.half,
+                         .pixel = &block.numbers,
+                         .index = i,
+                         .beam = beam,
+                         .widening = wideningOf(block, i),
+                         .first = wantsFirst ? &worker.firsts[k] : nullptr};
+  }
+}
+
+void PixelRenderer::finish(PixelWorker& worker) const {
+  traceSamples(worker);
+  endBlocks(worker, worker.blockCount);
+}
+
+// Adds the first blocks to the film; the rest goes on.
+void PixelRenderer::endBlocks(PixelWorker& worker, size_t count) const {
+  for (size_t k = 0; k < count; ++k) {
+    const SampleBlock& block = worker.blocks[k];
+    result_.film.add(block.x, block.y, block.half, block.sums);
+  }
+  if (count > 0 && count < worker.blockCount) std::swap(worker.blocks[0], worker.blocks[count]);
+  worker.blockCount -= count;
+}
+
+// Generates and traces the camera rays.
+void PixelRenderer::traceCameraRays(PixelSampler& sampler, std::span<CameraSample> cameras) const {
   std::array<Ray, PathBatch::kMaxPaths> rays;
   std::array<uint32_t, PathBatch::kMaxPaths> keys;
   std::array<std::optional<Hit>, PathBatch::kMaxPaths> hits;
   const size_t count = cameras.size();
   for (size_t i = 0; i < count; ++i) {
-    sampler.startSample(firstSample + uint32_t(i));
+    cameras[i].start(sampler);
     const vec2 offset = sampler.get2(dimension::kPixel);
     const float u = (float(cameras[i].x) + offset.x) / float(settings_.width);
     const float v = (float(cameras[i].y) + offset.y) / float(settings_.height);
@@ -109,33 +150,7 @@ void PixelRenderer::traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
   }
 }
 
-// Takes the first samples of the sampler's pixel.
-SampleSums PixelRenderer::renderBlock(PixelWorker& worker, const Block& block,
-                                      const Beam& beam) const {
-  const uint32_t samples = block.run.count;
-  SampleSums sums;
-  const bool wantsFirst = !result_.aovs.empty() || !result_.features.empty();
-  for (uint32_t i = 0; i < samples; i += PathBatch::kMaxPaths) {
-    const size_t count = std::min<size_t>(samples - i, PathBatch::kMaxPaths);
-    for (size_t k = 0; k < count; ++k) {
-      if (wantsFirst) worker.firsts[k] = {};
-      worker.cameras[k] = {.x = window_.x + block.x,
-                           .y = window_.y + block.y,
-                           .half = block.half,
-                           .ray = {},
-                           .hit = {},
-                           .beam = beam,
-                           .widening = wideningOf(block, i + uint32_t(k)),
-                           .first = wantsFirst ? &worker.firsts[k] : nullptr};
-    }
-    const auto taken = std::span(worker.cameras).first(count);
-    traceCameraRays(worker.context.sampler, i, taken);
-    renderBatch(worker, block, taken, i, sums);
-  }
-  return sums;
-}
-
-float PixelRenderer::wideningOf(const Block& block, uint32_t index) const {
+float PixelRenderer::wideningOf(const SampleBlock& block, uint32_t index) const {
   if (!settings_.regularize) return 0;
   const uint64_t sample = Film::kHalves * (block.run.table * table_.size() + block.run.first +
                                            index * block.run.stride) +
@@ -144,31 +159,32 @@ float PixelRenderer::wideningOf(const Block& block, uint32_t index) const {
       uint32_t(std::min<uint64_t>(sample, std::numeric_limits<uint32_t>::max())));
 }
 
-void PixelRenderer::renderBatch(PixelWorker& worker, const Block& block,
-                                std::span<const CameraSample> cameras, uint32_t firstSample,
-                                SampleSums& sums) const {
-  std::array<Sample, PathBatch::kMaxPaths> samples;
+void PixelRenderer::traceSamples(PixelWorker& worker) const {
+  const auto cameras = std::span(worker.cameras).first(worker.sampleCount);
+  std::array<Sample, PixelWorker::kMaxSamples> samples;
+  traceCameraRays(worker.context.sampler, cameras);
   std::vector<Rgb>& layers = worker.context.layers;
   const bool hasLayers = !layers.empty();  // of one sample at a time
-  if (!hasLayers) integrator_.sampleMany(cameras, firstSample, worker.context, samples);
+  if (!hasLayers) integrator_.sampleMany(cameras, worker.context, samples);
   for (size_t k = 0; k < cameras.size(); ++k) {
     if (hasLayers) {
       std::fill(layers.begin(), layers.end(), Rgb(0));
-      worker.context.sampler.startSample(firstSample + uint32_t(k));
+      cameras[k].start(worker.context.sampler);
       samples[k] = integrator_.sample(cameras[k], worker.context);
     }
-    add(worker, block, cameras[k], samples[k], sums);
+    add(worker, worker.blocks[worker.blockOf[k]], cameras[k], samples[k]);
   }
+  worker.sampleCount = 0;
 }
 
-void PixelRenderer::add(PixelWorker& worker, const Block& block, const CameraSample& camera,
-                        const Sample& sample, SampleSums& sums) const {
+void PixelRenderer::add(PixelWorker& worker, SampleBlock& block, const CameraSample& camera,
+                        const Sample& sample) const {
   const int x = block.x, y = block.y, half = block.half;
   if (sample.defect) {
     worker.invalid.add(*sample.defect, camera.x, camera.y);
     result_.aovs.add(x, y, *sample.defect);
   } else {
-    sums.add(sample.radiance);
+    block.sums.add(sample.radiance);
     if (!result_.layers.empty()) result_.layers.add(x, y, half, worker.context.layers);
   }
   if (camera.first) {

@@ -63,13 +63,27 @@ class SampleSequence {
   uint32_t tableSize_;
 };
 
-// The state of a thread that renders pixels.
+// Samples of a half of a pixel that share a randomisation of the table; x and y are of the film.
+struct SampleBlock {
+  int x = 0, y = 0, half = 0;
+  SampleSequence::Run run{};
+  PixelNumbers numbers;
+  SampleSums sums;
+};
+
+// The state of a thread that renders pixels. The samples of several pixels are traced together, so
+// that packets and lanes are full however few samples a pixel takes in a pass.
 struct PixelWorker {
+  static constexpr size_t kMaxSamples = PathBatch::kMaxPaths;
+
   PathContext context;
   InvalidSamples invalid;
-  // Scratch.
-  std::array<CameraSample, PathBatch::kMaxPaths> cameras = {};
-  std::array<FirstHit, PathBatch::kMaxPaths> firsts = {};
+  // Samples that wait, and their blocks, in the order of the samples.
+  size_t sampleCount = 0, blockCount = 0;
+  std::array<CameraSample, kMaxSamples> cameras = {};
+  std::array<FirstHit, kMaxSamples> firsts = {};
+  std::array<uint32_t, kMaxSamples> blockOf = {};
+  std::array<SampleBlock, kMaxSamples + 1> blocks = {};
 };
 
 class PixelRenderer {
@@ -80,30 +94,25 @@ class PixelRenderer {
 
   PixelWorker makeWorker() const;
 
-  // Adds the shard's part of samples [from, to) of a pixel of the film to the result. Samples with
-  // another `randomization` (32 bits) are independent of them. Thread-safe for different pixels.
+  // Adds the shard's part of samples [from, to) of a pixel of the film to the result, at the latest
+  // in finish(). Samples with another `randomization` (32 bits) are independent of them.
+  // Thread-safe for different pixels.
   void render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to, const Beam& beam,
               uint32_t randomization) const;
+  void finish(PixelWorker& worker) const;
 
   // The fraction of camera rays, through a grid of points, that hit something.
   double fractionOfHits() const;
 
  private:
-  // Samples of a half of a pixel that share a randomisation of the table; x and y are of the film.
-  struct Block {
-    int x, y, half;
-    SampleSequence::Run run;
-  };
-
   CameraRays raysAt(float time) const { return moving_ ? moving_->at(time) : cameraRays_; }
-  void traceCameraRays(PixelSampler& sampler, uint32_t firstSample,
-                       std::span<CameraSample> cameras) const;
-  SampleSums renderBlock(PixelWorker& worker, const Block& block, const Beam& beam) const;
-  void renderBatch(PixelWorker& worker, const Block& block, std::span<const CameraSample> cameras,
-                   uint32_t firstSample, SampleSums& sums) const;
-  void add(PixelWorker& worker, const Block& block, const CameraSample& camera,
-           const Sample& sample, SampleSums& sums) const;
-  float wideningOf(const Block& block, uint32_t index) const;
+  void addBlock(PixelWorker& worker, const Beam& beam) const;
+  void traceCameraRays(PixelSampler& sampler, std::span<CameraSample> cameras) const;
+  void traceSamples(PixelWorker& worker) const;
+  void endBlocks(PixelWorker& worker, size_t count) const;
+  void add(PixelWorker& worker, SampleBlock& block, const CameraSample& camera,
+           const Sample& sample) const;
+  float wideningOf(const SampleBlock& block, uint32_t index) const;
 
   const Integrator& integrator_;
   const World& world_;

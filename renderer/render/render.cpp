@@ -108,7 +108,9 @@ class Renderer {
       worker.context.records = trains_ ? state_.training->recordsOf(tile, pixel) : nullptr;
       pixels_.render(worker, x, y, countOf(x, y, state_.done), countOf(x, y, state_.wanted), beam,
                      taught);
+      if (trains_) pixels_.finish(worker);  // records are of one pixel
     });
+    pixels_.finish(worker);
     if (live_) live_->endTile(tile);
     world_.scene.checkTexels();
     state_.finished[tile] = 1;

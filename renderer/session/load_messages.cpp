@@ -120,13 +120,6 @@ void addProbe(const std::string& path, const LoadedProbe& probe, Messages& messa
           mapping.starts_with('a') ? "an" : "a", mapping, probe.reason);
 }
 
-void addPlate(const std::string& path, Messages& messages) {
-  const std::string extension = lowerExtension(path);
-  const bool isLinear =
-      extension == ".exr" || extension == ".hdr" || extension == ".pic" || extension == ".pfm";
-  if (!isLinear) addNote(messages, "{}: decoded from sRGB", path);
-}
-
 void addPlateScale(const CompositeEntry& composite, const PlateScale& found, Messages& messages) {
   const Rgb &scale = found.scale, &assumed = composite.groundReflectance;
   const double grey = luminance(glm::dvec3(assumed));
@@ -153,10 +146,13 @@ Messages loadMessages(const LoadedScene& loaded) {
     messages.insert(messages.end(), composite->messages.begin(), composite->messages.end());
   warn(loaded.modelWarnings);
   for (const std::string& line : scene.notes) addNote(messages, "{}", line);
-  if (!scene.lights.empty() && hasBodies(scene))
+  const bool blocksLamps = hasMaterial(scene, [](const Material& m) {
+    return m.isBody() && m.roughness == 0 && !m.straightShadows;
+  });
+  if (!scene.lights.empty() && blocksLamps)
     addWarning(messages,
-               "punctual lights do not pass bodies of glass, which refract their light: surfaces "
-               "behind are in full shadow; light from emissive surfaces passes");
+               "punctual lights do not pass smooth bodies of glass, which refract their light: "
+               "surfaces behind are in full shadow; light from emissive surfaces passes");
   if (receivesNoShadow(loaded))
     addWarning(messages,
                "the local scene is unlit (KHR_materials_unlit): it shows neither shadows nor light "
@@ -171,8 +167,6 @@ Messages loadMessages(const LoadedScene& loaded) {
   addSources(loaded, messages);
   if (const auto& scale = loaded.plateScale)
     addPlateScale(description.composite->entry, *scale, messages);
-  if (description.composite && description.composite->plateFile)
-    addPlate(*description.composite->plateFile, messages);
   return messages;
 }
 

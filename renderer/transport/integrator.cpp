@@ -6,18 +6,17 @@
 
 namespace chromeball {
 
-void PathIntegrator::sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample,
-                                PathContext& context, std::span<Sample> samples) const {
+void PathIntegrator::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+                                std::span<Sample> samples) const {
   thread_local PathBatch batch;
   batch.clear();
   for (const CameraSample& camera : cameras) batch.add(camera);
-  batch.trace(tracer_, firstSample, context);
+  batch.trace(tracer_, context);
   for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(batch.radiance(i));
 }
 
 struct PathBatch::Task {
   const PathTracer& tracer;
-  uint32_t firstSample;
   PathContext& context;
 
   const LightSource& lighting() const { return tracer.lighting(); }
@@ -29,12 +28,13 @@ struct PathBatch::Task {
 void PathBatch::add(const CameraSample& camera) {
   assert(count_ < kMaxPaths);
   new (&paths_[count_]) PathState(camera.path());  // in place, for a state is large
+  cameras_[count_] = &camera;
   hits_[count_] = camera.hit;
   ++count_;
 }
 
-void PathBatch::trace(const PathTracer& tracer, uint32_t firstSample, PathContext& context) {
-  Task task{tracer, firstSample, context};
+void PathBatch::trace(const PathTracer& tracer, PathContext& context) {
+  Task task{tracer, context};
   context.counts.camera += count_;
   active_.size = 0;
   for (size_t i = 0; i < count_; ++i) active_.add(uint32_t(i));
@@ -54,7 +54,7 @@ void PathBatch::trace(const PathTracer& tracer, uint32_t firstSample, PathContex
 
 // The sampler continues with the numbers for the path's next vertex.
 void PathBatch::select(uint32_t path, Task& task) {
-  task.context.sampler.startSample(task.firstSample + path);
+  cameras_[path]->start(task.context.sampler);
   task.context.sampler.startVertex(paths_[path].depth);
 }
 

@@ -14,15 +14,19 @@
 namespace chromeball {
 
 // A camera ray through pixel (x, y) and its closest hit. `half`: which half of the pixel's samples
-// (Film) it belongs to.
+// (Film) it belongs to. Its random numbers are those of `pixel`, which must outlive it, for sample
+// `index`.
 struct CameraSample {
-  int x, y, half;
-  Ray ray;
+  int x = 0, y = 0, half = 0;
+  const PixelNumbers* pixel = nullptr;
+  uint32_t index = 0;
+  Ray ray{};
   std::optional<Hit> hit;
   Beam beam{};                // the ray's footprint, for texture filtering
   float widening = 0;         // as in PathState
   FirstHit* first = nullptr;  // output; null: not wanted
 
+  void start(PixelSampler& sampler) const { sampler.startSample(*pixel, index); }
   PathState path() const {
     return {.ray = ray, .widening = widening, .beam = beam, .first = first};
   }
@@ -42,16 +46,15 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  // One sample of a pixel. Writes context.layers: one value per layer of layers(), initially 0.
-  // Called concurrently, with one context per thread.
+  // One sample, for which the sampler has been started. Writes context.layers: one value per layer
+  // of layers(), initially 0. Called concurrently, with one context per thread.
   virtual Sample sample(const CameraSample& camera, PathContext& context) const = 0;
 
-  // The same for several samples of a pixel: cameras[i] is sample firstSample + i of the sampler's
-  // pixel. Only for integrators without layers.
-  virtual void sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample,
-                          PathContext& context, std::span<Sample> samples) const {
+  // The same for several samples, of any pixels. Only for integrators without layers.
+  virtual void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+                          std::span<Sample> samples) const {
     for (size_t i = 0; i < cameras.size(); ++i) {
-      context.sampler.startSample(firstSample + uint32_t(i));
+      cameras[i].start(context.sampler);
       samples[i] = sample(cameras[i], context);
     }
   }
@@ -75,14 +78,14 @@ class PathIntegrator : public Integrator {
     return context.clamp(tracer_.radiance(camera.path(), camera.hit, context));
   }
 
-  void sampleMany(std::span<const CameraSample> cameras, uint32_t firstSample, PathContext& context,
+  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
                   std::span<Sample> samples) const override;
 
  private:
   PathTracer tracer_;
 };
 
-// Paths of one pixel that are traced together, a vertex of each at a time: their rays form packets,
+// Paths that are traced together, a vertex of each at a time: their rays form packets,
 // and their reads from the probe's tables and the meshes overlap.
 
 // Gives the same estimates as PathTracer::radiance(). A batch is reused for the next paths, since
@@ -91,10 +94,9 @@ class PathBatch {
  public:
   static constexpr size_t kMaxPaths = LightSource::kMaxMany;
 
-  void add(const CameraSample& camera);
+  void add(const CameraSample& camera);  // must outlive the tracing
 
-  // Traces all paths; path i is sample firstSample + i of the sampler's pixel.
-  void trace(const PathTracer& tracer, uint32_t firstSample, PathContext& context);
+  void trace(const PathTracer& tracer, PathContext& context);  // all paths
 
   // The results, in the order of add().
   const Rgb& radiance(size_t i) const { return paths_[i].radiance; }
@@ -125,6 +127,7 @@ class PathBatch {
 
   size_t count_ = 0;
   std::array<PathState, kMaxPaths> paths_;
+  std::array<const CameraSample*, kMaxPaths> cameras_;
   std::array<std::optional<Hit>, kMaxPaths> hits_;
   std::array<DeferredLight, kMaxPaths> lights_;
   Indices active_, shaded_;

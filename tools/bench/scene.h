@@ -103,6 +103,7 @@ inline constexpr int kTraced = PathBatch::kMaxPaths;  // samples per pixel of tr
 inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
   const PathTracer tracer = s.tracer();
   const auto batch = std::make_unique<PathBatch>();
+  std::array<CameraSample, kTraced> cameras;
   std::array<std::optional<Hit>, kTraced> hits;
   const std::array<uint32_t, kTraced> keys{};
   return sumOverPixels(
@@ -112,9 +113,13 @@ inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
         batch->clear();
         for (size_t i = 0; i < rays.size(); ++i) {
           if (log) log->rays.push_back({rays[i], false});
-          batch->add({.x = 0, .y = 0, .half = 0, .ray = rays[i], .hit = hits[i]});
+          cameras[i] = {.pixel = &context.sampler.pixel(),
+                        .index = uint32_t(i),
+                        .ray = rays[i],
+                        .hit = hits[i]};
+          batch->add(cameras[i]);
         }
-        batch->trace(tracer, 0, context);
+        batch->trace(tracer, context);
         Rgb sum(0);
         for (size_t i = 0; i < rays.size(); ++i) sum += batch->radiance(i);
         return sum;

@@ -264,7 +264,8 @@ AssemblyTarget parseTarget(const AssembleArguments& arguments,
   const std::optional<Mapping> mapping =
       parseMapping(arguments.to, size.width, size.height, "--to");
   if (!mapping) return {parseMapping(arguments.to, "--to"), size, size};
-  return {*mapping, size, *mapping == Mapping::LatLong ? size : natural};
+  return {*mapping, size,
+          *mapping == Mapping::LatLong ? size : checkedSize(arguments.out, natural)};
 }
 
 std::vector<AssemblyPhotograph> loadPhotographs(const AssembleArguments& arguments) {

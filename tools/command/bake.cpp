@@ -12,6 +12,7 @@
 #include "bake/vertex_light.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "commands.h"
 #include "front/arguments.h"
 #include "front/plan_render.h"
@@ -247,7 +248,7 @@ class Bake {
       }
     if (!options_.quiet())
       fmt::print("baked {} in {:.2f} s, {} samples: {}\n", options_.what, watch_.seconds(),
-                 settings_.samples, summary_);
+                 settings_.samples, printable(summary_));
   }
 
   const BakeOptions& options_;

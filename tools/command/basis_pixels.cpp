@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "film/rows.h"
 #include "image/io/output_file.h"
 #include "interrupt.h"
@@ -113,7 +114,7 @@ void runBasisPixels(const BasisArguments& a) {
                s.height, s.samples, basis.size(), basis.name(),
                written.hasOwnLight ? " and the scene's own light" : "",
                rows < s.height ? fmt::format(", in {} bands", ceilDivide(s.height, rows)) : "",
-               watch.seconds(), a.out);
+               watch.seconds(), printableName(a.out));
 }
 
 }  // namespace chromeball

@@ -6,6 +6,7 @@
 #include "bake/baked_file.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "image/io/output_file.h"
 #include "messages.h"
 #include "progress_bar.h"
@@ -51,7 +52,7 @@ class BasisVertices {
     if (!options_.quiet())
       fmt::print("transfer of {} vertices in {:.2f} s, {}, {} samples{}: {}\n", points.size(),
                  watch_.seconds(), basis_.name(), loaded_.description.settings.samples, summary_,
-                 options_.out);
+                 printableName(options_.out));
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "commands.h"
 #include "denoise/denoise.h"
 #include "image/io/output_file.h"
@@ -101,7 +102,7 @@ void run(const ImageDenoiseArguments& arguments) {
   if (!arguments.quiet)
     fmt::print("noise {}: {}\n",
                std::isfinite(noise) ? fmt::format("about {:.2f}%", 100 * noise) : "unknown",
-               arguments.output);
+               printableName(arguments.output));
 }
 
 }  // namespace

@@ -26,7 +26,12 @@ void run(const ImageDivideArguments& arguments) {
   OutputImage output;
   output.metadata = keptMetadata(file.metadata, arguments.a, arguments.output);
   std::optional<Image> clipped = layerOf(file, "clipped", arguments.a);
-  Image a = colorOf(std::move(file), arguments.a);
+  std::vector<std::string> others = layerNames(file);
+  std::erase(others, "clipped");
+  if (!others.empty())
+    note("{}: its colour alone is divided and written; without the layers {}", arguments.a,
+         fmt::join(others, ", "));
+  Image a = colorAndAlphaOf(std::move(file), arguments.a);
   if (a.width != b.width || a.height != b.height)
     throwInput("{}: is {} x {}, but {} is {} x {}; only images of the same size can be divided",
                arguments.a, a.width, a.height, arguments.b, b.width, b.height);
@@ -39,7 +44,7 @@ void run(const ImageDivideArguments& arguments) {
         "{}: {} channels divided by {} are NaN or infinite: such texels, or results above the "
         "largest float, 3.4e38",
         arguments.a, invalid, arguments.b);
-  output.layers.push_back({"", "RGB", std::move(a)});
+  output.layers.push_back({"", a.channels == 4 ? "RGBA" : "RGB", std::move(a)});
   if (clipped) output.layers.push_back({"clipped", "", *std::move(clipped)});
   writeKept(arguments.output, std::move(output), arguments.a);
 }
@@ -52,7 +57,7 @@ void addImageDivideCommand(Command image) {
                                              "Divide the colour of an image by that of another, in "
                                              "linear light: a photograph by its flat field.",
                                              run);
-  command.addRequired("A", a.a, "the image; its layer `clipped` is kept");
+  command.addRequired("A", a.a, "the image; its alpha and its layer `clipped` are kept");
   command.addRequired("B", a.b, "what to divide by");
   command.addRequired("-o,--output", a.output, "the image to write: .exr, .hdr, .pfm or .png");
 }

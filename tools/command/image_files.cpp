@@ -75,6 +75,10 @@ void writeKept(const std::string& out, OutputImage output, const std::string& in
   print(writeImage(out, output, transform));
 }
 
+void warnOfClippedLight(const ImageFile& file, const std::string& path) {
+  for (const Message& message : clippedLight(file, path)) print({message});
+}
+
 LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option) {
   LoadedProbe probe = loadProbe(path, mapping, option);
   print(probeMessages(probe, path));

@@ -30,6 +30,10 @@ Metadata keptMetadata(Metadata metadata, const std::string& in, const std::strin
 void writeKept(const std::string& out, OutputImage output, const std::string& in,
                const DisplayTransform& transform = {});
 
+// Warns of a file whose brightest light is lost: integers, clipped at white; pixels marked in the
+// layer `clipped` of merged photographs.
+void warnOfClippedLight(const ImageFile& file, const std::string& path);
+
 LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option);
 
 // Returns the size of a map to make for `file`. Throws InputError if it exceeds the limit of an

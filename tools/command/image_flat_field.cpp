@@ -31,6 +31,15 @@ struct Series {
   ImageSize size{};
 };
 
+// Whether a pixel of the source is one that `probe merge` marks as clipped.
+bool isMarkedNear(const Image& clipped, const dvec2& position, double radius) {
+  for (int y = 0; y < clipped.height; ++y)
+    for (int x = 0; x < clipped.width; ++x)
+      if (*clipped.at(x, y) > 0 && glm::distance(dvec2(x + 0.5, y + 0.5), position) <= radius + 1)
+        return true;
+  return false;
+}
+
 Series measure(const ImageFlatFieldArguments& arguments) {
   constexpr float kSaturated = 0.98f;
   Series series;
@@ -38,6 +47,7 @@ Series measure(const ImageFlatFieldArguments& arguments) {
     const std::string& file = arguments.files[i];
     ImageFile read = openImageFile(file);
     const bool hasWhite = read.integers;
+    const std::optional<Image> clipped = layerOf(read, "clipped", file);
     const Image image = colorOf(std::move(read), file);
     if (i == 0) series.size = {image.width, image.height};
     if (image.width != series.size.width || image.height != series.size.height)
@@ -47,7 +57,8 @@ Series measure(const ImageFlatFieldArguments& arguments) {
     const dvec2 position = arguments.positions.empty() ? findSource(image)
                                                        : parsePoint(arguments.positions[i], "--at");
     series.samples.push_back(measureSource(image, position, arguments.radius, file));
-    if (hasWhite && maxComponent(Rgb(series.samples.back().radiance)) > kSaturated)
+    const bool isWhite = hasWhite && maxComponent(Rgb(series.samples.back().radiance)) > kSaturated;
+    if (isWhite || (clipped && isMarkedNear(*clipped, position, arguments.radius)))
       throwInput("{}: the source at {:.1f},{:.1f} is saturated; expose less", file, position.x,
                  position.y);
   }

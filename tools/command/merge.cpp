@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "base/json_text.h"
+#include "base/text.h"
 #include "commands.h"
 #include "image/io/output_file.h"
 #include "image/io/read_image.h"
@@ -66,7 +67,8 @@ void run(const MergeArguments& arguments) {
   if (!arguments.quiet)
     fmt::print("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samples,
                parts.paths().size(), parts.paths().size() == 1 ? "" : "s", inWords(finished.noise),
-               inWords(finished.denoised), fmt::join(arguments.outputs, ", "));
+               inWords(finished.denoised),
+               printable(fmt::format("{}", fmt::join(arguments.outputs, ", "))));
 }
 
 }  // namespace

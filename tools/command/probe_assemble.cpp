@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "assemble_options.h"
+#include "base/text.h"
 #include "commands.h"
 #include "image/io/write_image.h"
 #include "image_files.h"
@@ -58,7 +59,7 @@ JsonValue toJson(const Report& report) {
 void print(const Report& report) {
   for (size_t i = 0; i < report.views.size(); ++i) {
     const AssemblyPhotograph& p = report.photographs[i];
-    fmt::print("photograph   {}\n", p.file);
+    fmt::print("photograph   {}\n", printableName(p.file));
     fmt::print("circle       {:.2f},{:.2f},{:.2f}{}\n", p.circle.centre.x, p.circle.centre.y,
                p.circle.radius,
                p.found ? fmt::format(", found: +- {:.2f} pixels, {:.0f}% of it are edges",

@@ -2,6 +2,7 @@
 // chromeball probe merge 1.jpg 2.jpg ... -o hdr.exr
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "command.h"
 #include "commands.h"
 #include "front/arguments.h"
@@ -152,8 +153,8 @@ void print(const PhotographSeries& series, const MergedPhotographs& merged) {
   const double pixels = double(merged.image.clipped.texels.size()) / 100;
   for (size_t i = 0; i < series.files.size(); ++i)
     fmt::print("exposure {:<3}    {}: {}, factor {}; {:.3g}% used, {:.3g}% saturated\n", i + 1,
-               series.files[i], settingsText(merged.settings[i]), factorText(merged.factors[i]),
-               double(merged.image.uses[i].weighted) / pixels,
+               printableName(series.files[i]), settingsText(merged.settings[i]),
+               factorText(merged.factors[i]), double(merged.image.uses[i].weighted) / pixels,
                double(merged.image.uses[i].saturated) / pixels);
   for (const ExposureAgreement& a : merged.agreements)
     if (const auto error = a.error())

@@ -25,14 +25,20 @@ struct Photograph {
   double saturation;  // channels from here on are clipped
 };
 
-// Integer files are clipped at white, half floats at 65504.
+// Integer files are clipped at white, half floats at 65504, merged photographs where they say so.
 Photograph loadPhotograph(const std::string& file, const std::optional<double>& saturation) {
   constexpr double kWhite = 1, kLargestHalf = 65504;
   ImageFile read = openImageFile(file);
   const bool hasIntegers = read.integers;
   if (hasIntegers)
-    warn("{}: has integer texels: decoded from sRGB, without the response of the camera", file);
-  return {colorOf(std::move(read), file), saturation.value_or(hasIntegers ? kWhite : kLargestHalf)};
+    warn("{}: has integer texels: {}, without the response of the camera", file,
+         decodingInWords(read));
+  const std::optional<Image> clipped = layerOf(read, "clipped", file);
+  const double limit = saturation.value_or(hasIntegers ? kWhite : kLargestHalf);
+  Image image = colorOf(std::move(read), file);
+  for (size_t i = 0; clipped && i < image.pixels(); ++i)
+    if (*clipped->at(i) > 0) image.setRgb(i, Rgb(float(limit)));
+  return {std::move(image), limit};
 }
 
 dvec3 parseStandard(const std::string& text) {

@@ -26,7 +26,10 @@ struct ProbeStitchArguments {
 std::vector<Tile> loadTiles(const std::vector<TileEntry>& entries) {
   std::vector<Tile> tiles;
   for (const TileEntry& entry : entries) {
-    tiles.push_back({entry.file, openImage(entry.file), Rotation::ofAngles(entry.pose), entry.fov});
+    ImageFile file = openImageFile(entry.file);
+    warnOfClippedLight(file, entry.file);
+    tiles.push_back({entry.file, colorOf(std::move(file), entry.file),
+                     Rotation::ofAngles(entry.pose), entry.fov});
     for (const float channel : tiles.back().image.texels)
       if (!std::isfinite(channel)) throwInput("{}: has invalid pixels", entry.file);
   }

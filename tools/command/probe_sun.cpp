@@ -77,7 +77,8 @@ BallSamples readBall(const ProbeSunArguments& arguments, const DiffuseBall& ball
   const ImageFile file = openImageFile(arguments.ball);
   const Image photograph = colorOf(ImageFile(file), arguments.ball);
   if (file.integers)
-    warn("{}: has integer texels, decoded as sRGB; a merged .exr is linear", arguments.ball);
+    warn("{}: has integer texels, {}; a merged .exr is linear", arguments.ball,
+         decodingInWords(file));
   BallSamples samples =
       sampleBall(ball, photograph, excludedPixels(arguments, file, photograph), arguments.ball);
   if (samples.invalid > 0)

@@ -5,6 +5,7 @@
 #include "bake/vertex_light.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "messages.h"
@@ -67,7 +68,7 @@ class RelightModel {
     if (options_.quiet) return;
     fmt::print("lit {} vertices in {:.3f} s by {} of {} coefficients of {}, scale {:g}: {}\n",
                points.size(), seconds, kept_, file_.basis().size(), file_.basis().name(), white,
-               options_.out);
+               printableName(options_.out));
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
@@ -92,7 +93,8 @@ void checkPictureFinite(const Image& picture, const std::string& path) {
       throwInput("{}: the picture exceeds the largest float, 3.4e38; give a smaller --scale", path);
 }
 
-void writePicture(const RelightOptions& a, const Image& picture, const DirectionBasis& basis) {
+void writePicture(const RelightOptions& a, const Image& picture, const DirectionBasis& basis,
+                  const Metadata& more = {}) {
   const DisplayTransform transform{parseToneOperator(a.tone), a.exposure};
   OutputImage output;
   output.layers.push_back({"", "RGB", picture});
@@ -100,7 +102,8 @@ void writePicture(const RelightOptions& a, const Image& picture, const Direction
                      {"stage", a.source()},
                      {"basis", basis.name()}};
   if (!a.probes.empty()) output.metadata["probe"] = a.probes.front();
-  print(writeImage(a.out, output, transform));
+  output.metadata.insert(more.begin(), more.end());
+  writeKept(a.out, std::move(output), a.source(), transform);
 }
 
 // "": all was kept.
@@ -133,17 +136,17 @@ void runRelitPicture(const RelightOptions& a) {
   if (!a.quiet)
     fmt::print("relit {} x {} pixels from {} elements ({}) in {:.2f} s{}: {}\n", stage.width(),
                stage.height(), stage.basis().size(), stage.basis().name(), watch.seconds(),
-               leftOutInWords(relit, kept), a.out);
+               leftOutInWords(relit, kept), printableName(a.out));
 }
 
 void runReflectanceFunction(const RelightOptions& a) {
   StageBands stage = openStage(a);
   const glm::ivec2 pixel = parsePixel(a.pixel, stage);
   const Image map = reflectanceFunction(stage.row(pixel.y), pixel.x, 0);
-  writePicture(a, map, stage.basis());
+  writePicture(a, map, stage.basis(), {{kMappingAttribute, mappingName(Mapping::LatLong)}});
   if (!a.quiet)
     fmt::print("reflectance function of pixel {}, {} ({}), {} x {} directions: {}\n", pixel.x,
-               pixel.y, stage.basis().name(), map.width, map.height, a.out);
+               pixel.y, stage.basis().name(), map.width, map.height, printableName(a.out));
 }
 
 void runRelightPreview(const RelightOptions& a) {

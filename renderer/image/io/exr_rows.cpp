@@ -77,8 +77,9 @@ Imf::Header headerOf(const ExrLayout& layout) {
       Imath::Box2i(V2i(p.x, p.y), V2i(p.x + layout.width - 1, p.y + layout.height - 1)));
   header.compression() = layout.separateRows ? Imf::ZIPS_COMPRESSION : Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = 4;
-  header.insert("capDate", Imf::StringAttribute(localTime()));
   setMetadata(layout.metadata, header);
+  header.erase("capDate");  // of the file that an image is made of, of any type
+  header.insert("capDate", Imf::StringAttribute(localTime()));
   for (const std::string& channel : layout.channels)
     header.channels().insert(channel, Imf::Channel(layout.halves ? Imf::HALF : Imf::FLOAT));
   return header;

@@ -108,6 +108,28 @@ ChannelIndices neededColor(const ImageFile& file, const fs::path& path) {
 
 }  // namespace
 
+const char* decodingInWords(const ImageFile& file) {
+  if (!file.transfer || file.transfer == Transfer::Srgb) return "decoded from sRGB";
+  return file.transfer == Transfer::Linear ? "linear, as it states" : "decoded as it states";
+}
+
+Messages clippedLight(const ImageFile& file, const fs::path& path) {
+  Messages messages;
+  if (file.integers)
+    addWarning(messages,
+               "{}: has integer texels: {}, without the response of the camera, and clipped at "
+               "white; use an HDR image",
+               path.string(), decodingInWords(file));
+  const std::optional<Image> clipped = findLayer(file, "clipped");
+  const auto isMarked = [](float mark) { return mark > 0; };
+  if (const auto marked = clipped ? std::ranges::count_if(clipped->texels, isMarked) : 0)
+    addWarning(messages,
+               "{}: {:.2g}% of its pixels are brighter than what was measured (layer `clipped`); "
+               "exposures that are compared there are wrong",
+               path.string(), 100 * double(marked) / double(clipped->pixels()));
+  return messages;
+}
+
 std::optional<Image> findColor(const ImageFile& file) {
   const auto indices = colorIndices(file);
   if (!indices) return {};

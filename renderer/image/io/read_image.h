@@ -66,6 +66,13 @@ struct ImageFile {
   Messages messages = {};  // choices, and contents not understood; each "FILE: ..."
 };
 
+// How the light of a file of integers was read: "decoded from sRGB", for example.
+const char* decodingInWords(const ImageFile& file);
+
+// A warning of a photograph whose brightest light is lost: integers, clipped at white, or pixels
+// that are marked in the layer `clipped` of merged photographs.
+Messages clippedLight(const ImageFile& file, const std::filesystem::path& path);
+
 // Only the attributes of an .exr.
 Metadata readExrMetadata(const std::filesystem::path& path);
 

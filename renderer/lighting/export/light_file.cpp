@@ -143,9 +143,10 @@ void writeLights(const std::filesystem::path& path, const LightRig& rig) {
 namespace {
 
 // A file's name may hold what would end a comment.
-std::string inComment(std::string text) {
+std::string inComment(const std::string& name) {
+  std::string text = printableName(name);
   for (char& c : text)
-    if (c == '*' || c == '\\' || (c >= 0 && c < ' ')) c = '?';
+    if (c == '*' || c == '\\') c = '?';
   return text;
 }
 

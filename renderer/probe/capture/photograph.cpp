@@ -26,24 +26,12 @@ double shareInside(const Circle& circle, int width, int height) {
   return inside / all;
 }
 
-namespace {
-
-const char* decodingOf(const std::optional<Transfer>& stated) {
-  if (!stated || stated == Transfer::Srgb) return "decoded from sRGB";
-  return stated == Transfer::Linear ? "linear, as it states" : "decoded as it states";
-}
-
-}  // namespace
-
 LoadedPhotograph loadPhotograph(const std::filesystem::path& path) {
   ImageFile file = readImageFile(path);
   LoadedPhotograph photograph;
   photograph.messages = file.messages;
-  if (file.integers)
-    addWarning(photograph.messages,
-               "{}: has integer texels: {}, without the response of the camera, and clipped "
-               "at white; use an HDR image",
-               path.string(), decodingOf(file.transfer));
+  const Messages clipped = clippedLight(file, path);
+  photograph.messages.insert(photograph.messages.end(), clipped.begin(), clipped.end());
   photograph.image = colorOf(std::move(file), path);
   const RepairReport repaired = repair(photograph.image, false);
   if (repaired.total() > 0)

@@ -226,7 +226,11 @@ LightStage stageOf(const fs::path& folder, const std::vector<StagePhotograph>& p
   const std::vector<double> solidAngles = cellSolidAngles(stage.basis);
   for (size_t i = 0; i < photographs.size(); ++i) {
     const fs::path path = folder / photographs[i].file;
-    const Image image = readImage(path, IntegerTexels::Srgb, &messages);
+    ImageFile file = readImageFile(path);
+    messages.insert(messages.end(), file.messages.begin(), file.messages.end());
+    const Messages clipped = clippedLight(file, path);
+    messages.insert(messages.end(), clipped.begin(), clipped.end());
+    const Image image = colorOf(std::move(file), path);
     if (i == 0) {
       checkInMemory(stage.basis, image.width, image.height, memory, path.string());
       stage.elements = Image(image.width, image.height, 3 * stage.basis.size());

@@ -53,8 +53,9 @@ def closed_loop(run):
     found = ", ".join(f"{value:.3f}" for value in measured["reflectivity"])
     return [Row(
         "HDRI figures 9.2, 9.9 and 9.10: a probe from photographs of a mirror ball",
-        "Two photographs of a ball, 90 degrees apart, show all directions and remove the camera's reflection. The "
-        "ball's reflectivity is that of a surface in the ball and beside it.",
+        "Two photographs of a ball, 90 degrees apart, show all directions well except straight down, "
+        "and remove the camera's reflection. The ball's reflectivity is that of a surface in the "
+        "ball and beside it.",
         ["chromeball probe reflectivity white-ball.exr --direct 2,2,10,10 --reflected 190,190,20,20",
          "chromeball probe assemble a.exr b.exr --azimuth 0,90 --distance 32 --schlick \\",
          "  --reflectivity .632,.647,.653 -o made.exr"],

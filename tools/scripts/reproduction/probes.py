@@ -29,7 +29,7 @@ def mappings(run):
     return [Row(
         "HDRI 9.4.1 to 9.4.4, figures 9.18 and 9.19: one probe in four mappings",
         "The ball is equal-area, the angular map has a constant radial density, cubes vary by 5.2.",
-        ["chromeball probe convert probes/noon.exr OUT.exr --to MAPPING --size 256x256",
+        ["chromeball probe convert probes/noon.exr OUT.exr --to MAPPING --size WIDTHxHEIGHT",
          "chromeball probe info OUT.exr --mapping-report"],
         "Of 256 x 256 texels; the cube has 384 x 256, the lat-long map 512 x 256:\n\n"
         + table(["mapping", "largest / smallest solid angle of a texel", "closed form"], rows), "",
@@ -61,8 +61,8 @@ def irradiance(run):
         return []
     return [Row(
         "HDRI 9.8.1, ML07: irradiance from little data",
-        "Nine spherical harmonics keep 99% (HDRI); ML07 integrated every normal for 24 hours, and found faster "
-        "ways to have \"too many artefacts\".",
+        "Nine spherical harmonics keep 99% (HDRI); ML07 integrated every normal for 24 hours, and "
+        "found a faster one, by the diffuse convolution of HDRShop, to have \"too many artifacts\".",
         ["chromeball probe convolve PROBE OUT.exr --kernel diffuse --from-size 32x16",
          "chromeball probe convolve PROBE OUT.exr --kernel diffuse --method sh"],
         "Mean / maximum error in percent of the mean irradiance, from a reduction to 32 x 16 texels and from nine "
@@ -122,12 +122,14 @@ def rays(run):
         rows.append([name] + [f"{counts[sampling]['upward']:,}" for sampling in ("uniform", "cosine", "luminance")])
     return [Row(
         "HDRI 9.6, figure 9.24: how many rays?",
-        "Tens of rays under an overcast sky, hundreds or thousands in interiors, hundreds of thousands with a sun.",
+        "Tens of rays under an overcast sky, hundreds or thousands in scenes with concentrated light "
+        "sources, hundreds of thousands with a sun.",
         ["chromeball probe rays PROBE --size 256x128"],
         "Random rays for a standard error of 10% on a surface that faces up:\n\n"
         + table(["probe", "uniform", "cosine", "luminance"], rows),
-        "All three statements hold for random rays, those of the first for rays in proportion to the cosine or the "
-        "luminance; sampling by luminance needs few even with a sun.")]
+        "For uniform rays the first and the third statement hold, and the second but for St Peter's, "
+        "which needs tens of thousands; rays in proportion to the cosine need fewer under an "
+        "overcast sky; sampling by luminance needs few even with a sun.")]
 
 
 def rows(run):

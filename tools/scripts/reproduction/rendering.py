@@ -22,7 +22,8 @@ def grace_by_lights(run):
     return [Row(
         "HDRI figures 9.32 and 9.33: Grace with 16, 64 and 256 lights against 4096 random rays",
         "64 lights are close, 256 nearly indistinguishable from the truth, and free of noise.",
-        ["chromeball render scenes/models/pillars.gltf --probe grace_probe.hdr --strategy median-cut:N"],
+        ["chromeball render scenes/models/pillars.gltf --probe grace_probe.hdr --strategy "
+         "median-cut:N -o OUT.exr"],
         table(["strategy", "samples", "FLIP", "relMSE"], rows),
         "A FLIP below 0.05 is hard to see. With 64 samples a pixel of 256 lights the noise of choosing among them is "
         "part of the error.")]
@@ -43,7 +44,8 @@ def st_peters(run):
     return [Row(
         "HDRI figures 9.36 and 9.37: 64 samples by importance",
         "Importance sampling of St Peter's has far less noise than random directions.",
-        ["chromeball render scenes/models/pillars.gltf --probe stpeters_cross.hdr --samples 64 --mis off",
+        ["chromeball render scenes/models/pillars.gltf --probe stpeters_cross.hdr --samples 64 "
+         "--strategy STRATEGY --mis HEURISTIC -o OUT.exr",
          "chromeball probe plot probes/noon.exr row.svg"],
         table(["samples of 64", "relMSE", "times that of importance"],
               [[name, f"{error:.3g}", f"{error / errors['importance']:.0f}"] for name, error in errors.items()]), "",

@@ -25,7 +25,8 @@ def few_rays(run):
         "HDRI figure 9.21: a glossy pot, 75 rays per pixel",
         "Rays towards random directions waste most of their samples on a glossy surface; those drawn from the BSDF do "
         "not.",
-        ["chromeball render scenes/models/still-life.glb --probe PROBE --samples 75 --strategy STRATEGY"],
+        ["chromeball render scenes/models/still-life.glb --probe PROBE --samples 75 --strategy "
+         "STRATEGY -o OUT.exr"],
         table(["probe and strategy", "relMSE, 75 samples"], rows),
         "The objects here are a mixture of matte, lacquered, glass and metal ones. `importance` combines samples of the "
         "light with those of the BSDF.")]

@@ -71,13 +71,13 @@ def compressed(run):
         "--exposure", EXPOSURE)
     return Row(
         "HDRI figure 9.45: relighting on the coefficients of cosines",
-        "Reflectance functions are products of many values; of their coefficients after a discrete cosine transform of "
-        "8 x 8 blocks about 90% can be zero.",
+        "Reflectance functions are products of many values; of their coefficients after a discrete "
+        "cosine transform, as in JPEG, up to 90% can be zero.",
         ["chromeball relight stage.exr --probe PROBE --domain dct --keep 10% -o OUT.exr"],
         "The error, in percent, of the largest numbers alone:\n\n"
         + table(["probe", "values, 20%", "10%", "5%", "cosines, 20%", "10%", "5%"], rows),
-        "With a fifth of the numbers both are good; with fewer, cosines are three and more times as close. Numbers are kept by their size in the whole "
-        "stage; the text quantises them as JPEG does.",
+        "With a fifth of the numbers both are good; with fewer, cosines are 2.5 and more times as "
+        "close. Numbers are kept by their size in the whole stage; the text quantises them as JPEG does.",
         [("stage-function.png", "The reflectance function of one pixel, as a lat-long map")])
 
 
