@@ -24,9 +24,8 @@ bool isTraceable(const Ray& ray) {
   return sum.x + sum.y + sum.z < kFarthest && ray.tMax >= 0;
 }
 
-constexpr size_t kPacket = 8;
-
-void fillPacket(std::span<const Ray> rays, RayMask mask, int* valid, RTCRay8& r) {
+template <class Rays>
+void fillPacket(std::span<const Ray> rays, RayMask mask, int* valid, Rays& r) {
   for (size_t i = 0; i < rays.size(); ++i) {
     const Ray& ray = rays[i];
     valid[i] = isTraceable(ray) ? -1 : 0;
@@ -83,17 +82,19 @@ bool Accel::intersect(const Ray& ray, uint32_t key, Hit& hit, RayMask mask) cons
   return true;
 }
 
+template <size_t kRays>
 void Accel::intersectPacket(std::span<const Ray> rays, std::span<const uint32_t> keys,
                             Coherence coherence, std::span<std::optional<Hit>> hits,
                             RayMask mask) const {
-  alignas(32) int valid[kPacket] = {};
-  alignas(32) RTCRayHit8 r;
+  using Packet = PacketOf<kRays>;
+  alignas(64) int valid[kRays] = {};
+  alignas(64) typename Packet::RayHits r;
   fillPacket(rays, mask, valid, r.ray);
   for (size_t i = 0; i < rays.size(); ++i)
     r.hit.geomID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   Query query;
   initQueryContext(query.embree);
-  rtcIntersect(scene_, valid, r, coherence == Coherence::High, query.embree);
+  chromeball::intersectPacket<Packet>(scene_, valid, r, coherence == Coherence::High, query.embree);
   for (size_t i = 0; i < rays.size(); ++i) {
     hits[i].reset();
     if (!valid[i] || r.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -108,11 +109,12 @@ void Accel::intersectPacket(std::span<const Ray> rays, std::span<const uint32_t>
 void Accel::intersect(std::span<const Ray> rays, std::span<const uint32_t> keys,
                       Coherence coherence, std::span<std::optional<Hit>> hits, RayMask mask) const {
   assert(keys.size() == rays.size() && hits.size() == rays.size());
-  for (size_t begin = 0; begin < rays.size(); begin += kPacket) {
-    const size_t count = std::min(rays.size() - begin, kPacket);
+  for (size_t begin = 0; begin < rays.size(); begin += widest_) {
+    const size_t count = std::min(rays.size() - begin, widest_);
     if (!hasAlpha_ && count > 1) {  // the filters process one ray at a time
-      intersectPacket(rays.subspan(begin, count), keys.subspan(begin, count), coherence,
-                      hits.subspan(begin, count), mask);
+      const auto trace = count > 8 ? &Accel::intersectPacket<16> : &Accel::intersectPacket<8>;
+      (this->*trace)(rays.subspan(begin, count), keys.subspan(begin, count), coherence,
+                     hits.subspan(begin, count), mask);
       continue;
     }
     for (size_t i = begin; i < begin + count; ++i) {
@@ -122,14 +124,16 @@ void Accel::intersect(std::span<const Ray> rays, std::span<const uint32_t> keys,
   }
 }
 
+template <size_t kRays>
 void Accel::occludedPacket(std::span<const Ray> rays, std::span<Rgb> transmittances,
                            RayMask mask) const {
-  alignas(32) int valid[kPacket] = {};
-  alignas(32) RTCRay8 r;
+  using Packet = PacketOf<kRays>;
+  alignas(64) int valid[kRays] = {};
+  alignas(64) typename Packet::Rays r;
   fillPacket(rays, mask, valid, r);
   Query query;
   initQueryContext(query.embree);
-  rtcOccluded(scene_, valid, r, query.embree);
+  occludePacket<Packet>(scene_, valid, r, query.embree);
   for (size_t i = 0; i < rays.size(); ++i)
     transmittances[i] = Rgb(valid[i] && r.tfar[i] < 0 ? 0.0f : 1.0f);
 }
@@ -137,13 +141,14 @@ void Accel::occludedPacket(std::span<const Ray> rays, std::span<Rgb> transmittan
 void Accel::transmittance(std::span<const Ray> rays, std::span<Rgb> transmittances,
                           RayMask mask) const {
   assert(transmittances.size() == rays.size());
-  for (size_t begin = 0; begin < rays.size(); begin += kPacket) {
-    const size_t count = std::min(rays.size() - begin, kPacket);
-    if (!hasFilter_ && count > 1)  // the filters process one ray at a time
-      occludedPacket(rays.subspan(begin, count), transmittances.subspan(begin, count), mask);
-    else
-      for (size_t i = begin; i < begin + count; ++i)
-        transmittances[i] = transmittance(rays[i], mask);
+  for (size_t begin = 0; begin < rays.size(); begin += widest_) {
+    const size_t count = std::min(rays.size() - begin, widest_);
+    if (!hasFilter_ && count > 1) {  // the filters process one ray at a time
+      const auto trace = count > 8 ? &Accel::occludedPacket<16> : &Accel::occludedPacket<8>;
+      (this->*trace)(rays.subspan(begin, count), transmittances.subspan(begin, count), mask);
+      continue;
+    }
+    for (size_t i = begin; i < begin + count; ++i) transmittances[i] = transmittance(rays[i], mask);
   }
 }
 

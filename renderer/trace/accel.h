@@ -105,8 +105,11 @@ class Accel {
   void visitNear(const vec3& point, float radius, float time, VisitTriangle visit,
                  void* visitor) const;
   void build();
+  // Up to kRays rays.
+  template <size_t kRays>
   void intersectPacket(std::span<const Ray> rays, std::span<const uint32_t> keys,
                        Coherence coherence, std::span<std::optional<Hit>> hits, RayMask mask) const;
+  template <size_t kRays>
   void occludedPacket(std::span<const Ray> rays, std::span<Rgb> transmittances, RayMask mask) const;
   bool closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const;
   void resolveEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const;
@@ -115,6 +118,7 @@ class Accel {
   std::vector<RayMask> masks_;  // by instance; empty: all
   std::shared_ptr<BuiltGeometry> built_;
   RTCSceneTy* scene_ = nullptr;
+  size_t widest_ = 8;  // packet that the processor has vectors for
   bool hasFilter_ = false, hasAlpha_ = false, needsMedia_ = false;
 };
 

@@ -155,6 +155,8 @@ void Accel::build() {
   };
   const std::vector<bool> redundant = redundantInstances(scene, uses, *this);
   scene_ = built_->newScene();
+  if (rtcGetDeviceProperty(built_->device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED))
+    widest_ = 16;
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     if (redundant[i] || std::ranges::binary_search(still, uint32_t(i))) continue;
     endIfCancelled();

@@ -10,6 +10,24 @@
 
 namespace chromeball {
 
+// Packets of rays, by their width.
+template <size_t kRays>
+struct PacketOf;
+template <>
+struct PacketOf<8> {
+  using Rays = RTCRay8;
+  using RayHits = RTCRayHit8;
+  static constexpr auto intersect = &rtcIntersect8;
+  static constexpr auto occluded = &rtcOccluded8;
+};
+template <>
+struct PacketOf<16> {
+  using Rays = RTCRay16;
+  using RayHits = RTCRayHit16;
+  static constexpr auto intersect = &rtcIntersect16;
+  static constexpr auto occluded = &rtcOccluded16;
+};
+
 // The context that Embree passes to the filter functions.
 #if RTC_VERSION_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
@@ -28,19 +46,22 @@ inline void rtcOccluded(RTCScene scene, RTCRay& ray, QueryContext& context) {
   arguments.context = &context;
   rtcOccluded1(scene, &ray, &arguments);
 }
-inline void rtcIntersect(RTCScene scene, const int* valid, RTCRayHit8& rays, bool coherent,
-                         QueryContext& context) {
+template <class Packet>
+void intersectPacket(RTCScene scene, const int* valid, typename Packet::RayHits& rays,
+                     bool coherent, QueryContext& context) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.context = &context;
   if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcIntersect8(valid, scene, &rays, &arguments);
+  Packet::intersect(valid, scene, &rays, &arguments);
 }
-inline void rtcOccluded(RTCScene scene, const int* valid, RTCRay8& rays, QueryContext& context) {
+template <class Packet>
+void occludePacket(RTCScene scene, const int* valid, typename Packet::Rays& rays,
+                   QueryContext& context) {
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
   arguments.context = &context;
-  rtcOccluded8(valid, scene, &rays, &arguments);
+  Packet::occluded(valid, scene, &rays, &arguments);
 }
 #else
 using QueryContext = RTCIntersectContext;
@@ -52,13 +73,16 @@ inline void rtcIntersect(RTCScene scene, RTCRayHit& ray, QueryContext& context) 
 inline void rtcOccluded(RTCScene scene, RTCRay& ray, QueryContext& context) {
   rtcOccluded1(scene, &context, &ray);
 }
-inline void rtcIntersect(RTCScene scene, const int* valid, RTCRayHit8& rays, bool coherent,
-                         QueryContext& context) {
+template <class Packet>
+void intersectPacket(RTCScene scene, const int* valid, typename Packet::RayHits& rays,
+                     bool coherent, QueryContext& context) {
   if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect8(valid, scene, &context, &rays);
+  Packet::intersect(valid, scene, &context, &rays);
 }
-inline void rtcOccluded(RTCScene scene, const int* valid, RTCRay8& rays, QueryContext& context) {
-  rtcOccluded8(valid, scene, &context, &rays);
+template <class Packet>
+void occludePacket(RTCScene scene, const int* valid, typename Packet::Rays& rays,
+                   QueryContext& context) {
+  Packet::occluded(valid, scene, &context, &rays);
 }
 #endif
 
