@@ -79,7 +79,7 @@ class LightSource {
 
   // escaped() for up to kMaxMany rays. Strategies override it where table reads of several rays can
   // overlap.
-  static constexpr size_t kMaxMany = 32;
+  static constexpr size_t kMaxMany = 64;
   struct Escape {
     const LightPoint* point;
     vec3 wi;
