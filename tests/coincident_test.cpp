@@ -277,6 +277,25 @@ TEST(Coincident, TwoSheetsTintTwice) {
 }
 
 // A blended body is there as a whole or not at all: alpha T + 1 - alpha.
+// A surface that the camera's ray has passed is not met by another choice where the ray comes to a
+// surface at the same place.
+TEST(Coincident, CoverageInViewIsDecidedOnce) {
+  Material half = oneSidedMatte(Rgb(0));
+  half.baseColor.w = 0.5f;
+  half.alphaMode = AlphaMode::Blend;
+  for (const bool swapped : {false, true}) {
+    const auto shown = [&](const Material& other, bool otherFrontUp) {
+      Scene scene;
+      if (swapped) addSquare(scene, other, 0, otherFrontUp);
+      addSquare(scene, half, 0, true);
+      if (!swapped) addSquare(scene, other, 0, otherFrontUp);
+      return meanInWhite(scene, above(), 1024);
+    };
+    expectColor(shown(sheetOfGlass(), true), Rgb(0.5f), 0.01f, "with a clear pane");
+    expectColor(shown(half, false), Rgb(0.5f), 0.01f, "of a leaf of two sheets");
+  }
+}
+
 TEST(BlendedBody, ItsCoverageIsDecidedOnce) {
   const float attenuation = -std::log(0.75f) / 2;
   Material body = bodyOf(1, Rgb(attenuation));

@@ -139,6 +139,7 @@ void PixelRenderer::traceCameraRays(PixelSampler& sampler, std::span<CameraSampl
         camera.ray(u, v, ray.origin, ray.direction);
     };
     moving_ ? aim(moving_->at(ray.time)) : aim(cameraRays_);
+    sampler.startVertex(0);  // the key that other surfaces at the place of the hit are met with
     keys[i] = sampler.sampleKey();
   }
   world_.accel.intersect(std::span(rays).first(count), std::span(keys).first(count),
