@@ -258,5 +258,26 @@ TEST(Framing, BodiesTurnedInsideOutAreSeenFromOutside) {
   EXPECT_TRUE(isSeenFromOutside(creature));
 }
 
+// Nor are the legs of a table, which have floors: they are too small a part of it.
+TEST(Framing, TablesTurnedInsideOutAreSeenFromOutside) {
+  for (const float leg : {0.1f, 0.2f}) {
+    Scene table;
+    addMaterial(table, lambert(Rgb(0.5f)));
+    const auto addBox = [&](vec3 low, vec3 high) {  // with front faces inside
+      const vec3 x(high.x - low.x, 0, 0), y(0, high.y - low.y, 0), z(0, 0, high.z - low.z);
+      addQuad(table, 0, low, z, x);
+      addQuad(table, 0, low, x, y);
+      addQuad(table, 0, low, y, z);
+      addQuad(table, 0, high, -x, -z);
+      addQuad(table, 0, high, -y, -x);
+      addQuad(table, 0, high, -z, -y);
+    };
+    addBox({-1, 1, -1}, {1, 1.1f, 1});
+    for (const float px : {-0.9f, 0.9f - leg})
+      for (const float pz : {-0.9f, 0.9f - leg}) addBox({px, 0, pz}, {px + leg, 1, pz + leg});
+    EXPECT_TRUE(isSeenFromOutside(table)) << leg;
+  }
+}
+
 }  // namespace
 }  // namespace chromeball::framing_test

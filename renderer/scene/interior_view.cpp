@@ -121,6 +121,13 @@ bool isEnclosed(const Panorama& seen) {
   return std::count_if(seen.begin(), seen.end(), [](double s) { return s < 0; }) <= kMaxOpen;
 }
 
+// The area of the region around the eye, m^2. Gaps count as nothing.
+double areaAround(const Panorama& seen) {
+  double sum = 0;
+  for (const double squared : seen) sum += std::max(squared, 0.0);
+  return double(kPi) * sum / double(seen.size());
+}
+
 // The area seen in a view centred on direction i, up to a factor; -infinity if the view has a gap.
 double viewArea(const Panorama& seen, int i) {
   constexpr int kHalfView = 3;  // a view of 7/32 of a turn, 79 degrees
@@ -182,6 +189,7 @@ bool hasOpenSide(const std::vector<Sight>& sights, const dvec3& eye, const Bound
 
 std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& instances) {
   constexpr double kEyeHeight = 0.55;  // as a fraction of the room's height
+  constexpr double kLeastRoom = 0.02;  // of the footprint; the legs of a table are smaller
   constexpr float kFov = kPi / 3;
   const Bounds box = bounds(scene, instances);
   if (!(glm::min(box.size().x, glm::min(box.size().y, box.size().z)) > 0)) return std::nullopt;
@@ -190,6 +198,7 @@ std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& i
 
   const double height = glm::mix(double(box.min.y), double(box.max.y), kEyeHeight);
   const Section section(scene, instances, box, height);
+  const double footprint = double(box.size().x) * double(box.size().z);
   double maxArea = 0;
   dvec3 eye(0), target(0);
   for (int z = 0; z < Section::kSide; z += 4)
@@ -200,7 +209,7 @@ std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& i
         const auto distance = section.sightDistance(x, z, direction(i));
         seen[size_t(i)] = distance ? *distance * *distance : -1;
       }
-      if (!isEnclosed(seen)) continue;
+      if (!isEnclosed(seen) || areaAround(seen) < kLeastRoom * footprint) continue;
       for (int i = 0; i < kDirections; ++i) {
         const double area = viewArea(seen, i);
         if (!(area > maxArea)) continue;

@@ -69,8 +69,8 @@ def composite(run):
         "their difference; for shadows it prefers the ratio, for reflections the difference.",
         ["chromeball render scenes/terrace.toml --aov l_obj,l_noobj,difference,alpha,reflectance -o out/terrace.exr"],
         "Between the composites of the two formulas, the relMSE is "
-        f"{disagreement['relmse']:.2g}. [Measurements](results.md) have the errors of both where probe, "
-        "reflectance or gloss are wrong.",
+        f"{disagreement['relmse']:.2g}. [Measurements](results.md) have the errors of both where probe "
+        "or reflectance are wrong, or interreflection is missing.",
         "The ratio does not depend on the exposure of the probe; the difference keeps reflections on dark surfaces.",
         pictures)]
 
