@@ -63,7 +63,7 @@ TEST(EstimateError, EqualProbesHaveNone) {
   const Image probe = studioWithSlope();
   for (const EstimateError& error : errorsOf(probe, probe)) {
     EXPECT_EQ(error.rmse, 0);
-    EXPECT_EQ(error.angularError, 0);
+    EXPECT_NEAR(error.angularError, 0, 1e-10);
     EXPECT_NEAR(error.scaleInvariantRmse, 0, 1e-6);
     EXPECT_NEAR(error.scale, 1, 1e-12);
   }

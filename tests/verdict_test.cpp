@@ -110,25 +110,26 @@ TEST(Ratio, PairedIntervalsCoverTheTruth) {
   EXPECT_NEAR(double(covered) / kStudies, 0.95, 4 * std::sqrt(0.95 * 0.05 / kStudies));
 }
 
-// Means of squared errors of which one in 200 pixels has most: skewed, as a strategy that samples a
-// lamp rarely.
+// Means of squared errors of which three in 4000 pixels are nearly all, as of a strategy that
+// hardly finds a lamp. Where no pixel found it, in one of 20, no interval covers the truth; the
+// linear one reaches below 0, and not far enough up.
 TEST(Ratio, IntervalsCoverTheTruthUnderFireflies) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> unit;
   constexpr int kStudies = 1000, kPixels = 4000;
-  constexpr double kRare = 0.005, kBright = 1000, kTruth = kRare * kBright + 0.5;
+  constexpr double kRare = 3.0 / kPixels, kBright = 1000, kTruth = kRare * kBright + 5e-4;
   int covered = 0, linear = 0;
   for (int study = 0; study < kStudies; ++study) {
     std::vector<double> errors;
     for (int i = 0; i < kPixels; ++i)
-      errors.push_back(unit(random) + (unit(random) < kRare ? kBright : 0));
+      errors.push_back(1e-3 * unit(random) + (unit(random) < kRare ? kBright : 0));
     const Estimate noisy = meanOf(errors);
     const RatioEstimate times = ratio(noisy, {1, 0.01});
     covered += times.low() <= kTruth && kTruth <= times.high();
     linear += noisy.low() <= kTruth && kTruth <= noisy.high();
   }
-  EXPECT_GT(covered, 0.93 * kStudies);
-  EXPECT_GE(covered, linear);
+  EXPECT_GT(covered, 0.89 * kStudies);
+  EXPECT_LT(linear, 0.85 * kStudies);
 }
 
 TEST(Ratio, IsUnknownWithoutAPositiveNumber) {
@@ -136,7 +137,7 @@ TEST(Ratio, IsUnknownWithoutAPositiveNumber) {
   EXPECT_EQ(ratioText(ratio({1, 1}, {0, 0})), "unknown");
   EXPECT_EQ(ratioText({1, 0}), "1");
   EXPECT_EQ(ratioText({1.386, 0.05}), "1.39 (1.26 to 1.53)");
-  EXPECT_EQ(positiveText({685, 680}), "680 (98 to 4800)");
+  EXPECT_EQ(positiveText({685, 680}), "690 (98 to 4800)");
   EXPECT_EQ(positiveText({1e-5, 1e-4}), "not significant (+- 0.0002)");
 }
 

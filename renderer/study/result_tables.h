@@ -41,7 +41,7 @@ EstimateText estimateText(const Estimate& e);
 std::string significantText(const Estimate& e);
 
 // The same for a mean of numbers that are not negative. Where its interval includes 0, because a
-// few numbers are most of it, the one of its logarithm is given: "680 (97 to 4800)". (Its standard
+// few numbers are most of it, the one of its logarithm is given: "690 (98 to 4800)". (Its standard
 // error exceeds the mean only if something has been subtracted.)
 std::string positiveText(const Estimate& e);
 
