@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 
 #include <cmath>
+#include <vector>
 
 namespace chromeball {
 Moments Moments::of(std::span<const double> values) {
@@ -42,6 +43,24 @@ Estimate meanOf(std::span<const double> numbers) {
   for (const double x : numbers) mean += x / n;
   for (const double x : numbers) scatter += (x - mean) * (x - mean);
   return {mean, n > 1 ? std::sqrt(scatter / (n - 1) / n) : 0};
+}
+
+RatioEstimate operator*(const RatioEstimate& a, const RatioEstimate& b) {
+  return {a.value * b.value, std::hypot(a.logError, b.logError)};
+}
+
+RatioEstimate ratio(const Estimate& a, const Estimate& b) {
+  if (!(a.mean > 0 && b.mean > 0)) return {std::nan(""), 0};
+  return {a.mean / b.mean, std::hypot(a.standardError / a.mean, b.standardError / b.mean)};
+}
+
+RatioEstimate pairedRatio(std::span<const double> a, std::span<const double> b) {
+  std::vector<double> logs;
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) logs.push_back(std::log(a[i] / b[i]));
+  const Estimate log = meanOf(logs);
+  if (logs.size() < 2) return {std::exp(log.mean), 0};
+  const boost::math::students_t student(double(logs.size()) - 1);
+  return {std::exp(log.mean), log.standardError * quantile(student, 0.975) / 1.96};
 }
 
 namespace {

@@ -2,6 +2,7 @@
 // Hypothesis tests for means.
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "image/image.h"
@@ -37,6 +38,26 @@ struct Estimate {
 
 // The mean of independent numbers; its standard error is 0 for a single number.
 Estimate meanOf(std::span<const double> numbers);
+
+// An estimated ratio of positive numbers. Its error is one of the logarithm, so that its interval
+// is above 0, and finite, however noisy the numbers are. The value is NaN if it is unknown.
+struct RatioEstimate {
+  double value = 0, logError = 0;
+
+  // The 95% confidence interval, for normal errors of the logarithm.
+  double low() const { return value * std::exp(-1.96 * logError); }
+  double high() const { return value * std::exp(1.96 * logError); }
+};
+
+// The product of independent ratios.
+RatioEstimate operator*(const RatioEstimate& a, const RatioEstimate& b);
+
+// a / b of independent estimates; unknown unless both are above 0.
+RatioEstimate ratio(const Estimate& a, const Estimate& b);
+
+// The geometric mean of a[i] / b[i], with R - 1 degrees of freedom: the error is enlarged by
+// Student's quantile, so that 1.96 of it are a 95% interval. All numbers are above 0.
+RatioEstimate pairedRatio(std::span<const double> a, std::span<const double> b);
 
 // Tests whether two unbiased ways of rendering give the same image.
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "base/json.h"
 #include "base/json_text.h"
@@ -19,6 +20,10 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 Json toJson(const Estimate& e) {
   return {{"mean", number(e.mean)}, {"low", number(e.low())}, {"high", number(e.high())}};
+}
+
+Json toJson(const RatioEstimate& r) {
+  return {{"mean", number(r.value)}, {"low", number(r.low())}, {"high", number(r.high())}};
 }
 
 Json toJson(const Cell& cell) {
@@ -62,11 +67,13 @@ std::string resultsCsv(const StudyResults& results) {
       const BiasVariance& error = cell.error;
       csv += fmt::format("{},{},{},{}", strategy.name, strategy.unbiased ? "yes" : "no",
                          cell.budget.label(), cell.samples);
-      for (const Estimate& e : {cell.seconds, error.relMse, error.variance, error.squaredBias,
-                                error.bias, cell.efficiency})
+      for (const Estimate& e :
+           {cell.seconds, error.relMse, error.variance, error.squaredBias, error.bias})
         csv += fmt::format(",{:.6g},{:.6g},{:.6g}", e.mean, e.low(), e.high());
-      csv += fmt::format(",{:.4g},{:.6g},{:.6g},{:.6g},{:g}\n", cell.prepareSeconds, error.mse,
-                         error.referenceVariance, cell.noise, cell.invalidSamples);
+      const RatioEstimate& r = cell.efficiency;
+      csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.4g},{:.6g},{:.6g},{:.6g},{:g}\n", r.value,
+                         r.low(), r.high(), cell.prepareSeconds, error.mse, error.referenceVariance,
+                         cell.noise, cell.invalidSamples);
     }
   return csv;
 }
@@ -84,7 +91,7 @@ Json resultsJson(const Study& study, const StudyResults& results, const Machine&
                {"complete", results.complete},
                {"warnings", results.warnings},
                {"repeats", study.repeats},
-               {"baseline", study.baseline},
+               {"baseline", results.baseline},
                {"reference", {{"relative_standard_error", results.referenceNoise}}}};
   if (study.referenceFile.empty())
     json["reference"].update(
@@ -110,8 +117,9 @@ std::vector<const Cell*> ranking(const Study& study, const StudyResults& results
   const std::optional<Budget> budget = largestCommonBudget(study, results);
   for (const StrategyResult& strategy : results.strategies)
     if (const Cell* cell = budget ? findCell(strategy, *budget) : nullptr) cells.push_back(cell);
-  std::ranges::stable_sort(cells, std::ranges::greater(),
-                           [](const Cell* cell) { return cell->efficiency.mean; });
+  std::ranges::stable_sort(cells, std::ranges::greater(), [](const Cell* cell) {
+    return cell->efficiency.value > 0 ? cell->efficiency.value : 0;  // unknown: last
+  });
   return cells;
 }
 
@@ -119,13 +127,13 @@ std::string resultsTable(const Study& study, const StudyResults& results) {
   const std::vector<const Cell*> cells = ranking(study, results);
   if (cells.empty()) return "no budget has been rendered with all strategies\n";
   std::string table =
-      fmt::format("{:<26} {:>22} {:>18} {:>24} {:>22}   (at {})\n", "strategy", "efficiency",
+      fmt::format("{:<26} {:>24} {:>18} {:>24} {:>22}   (at {})\n", "strategy", "efficiency",
                   "seconds", "relMSE", "bias %", cells.front()->budget.label());
   for (const Cell* cell : cells) {
     const Estimate& bias = cell->error.bias;
-    table += fmt::format("{:<26} {:>22} {:>18} {:>24} {:>22}\n", cell->strategy,
-                         significantText(cell->efficiency), significantText(cell->seconds),
-                         significantText(cell->error.relMse),
+    table += fmt::format("{:<26} {:>24} {:>18} {:>24} {:>22}\n", cell->strategy,
+                         ratioText(cell->efficiency), positiveText(cell->seconds),
+                         positiveText(cell->error.relMse),
                          significantText({100 * bias.mean, 100 * bias.standardError}));
   }
   return table;
@@ -168,6 +176,22 @@ std::string significantText(const Estimate& e) {
   return fmt::format("{} +- {}", text.number, text.halfInterval);
 }
 
+std::string positiveText(const Estimate& e) {
+  if (estimateText(e).isSignificant || !(e.mean >= e.standardError)) return significantText(e);
+  return ratioText({e.mean, e.standardError / e.mean});
+}
+
+std::string ratioText(const RatioEstimate& r) {
+  if (!std::isfinite(r.value) || !std::isfinite(r.high())) return "unknown";
+  if (r.logError == 0) return shortNumber(r.value);
+  const int digits = 1.96 * r.logError < 0.2 ? 3 : 2;
+  const auto text = [&](double x) {
+    const double unit = std::pow(10.0, std::floor(std::log10(x)) + 1 - digits);
+    return shortNumber(std::round(x / unit) * unit, digits);
+  };
+  return fmt::format("{} ({} to {})", text(r.value), text(r.low()), text(r.high()));
+}
+
 std::string shortNumber(double x, int digits) {
   const double size = std::fabs(x);
   if (size >= std::pow(10, digits) && size < kMaxPlain) return fmt::format("{:.0f}", x);
@@ -176,96 +200,70 @@ std::string shortNumber(double x, int digits) {
 
 namespace {
 
-// A strategy and its cost; smaller is better.
-struct Contender {
-  const Cell* cell;
-  Estimate cost;
-};
+using Cells = std::vector<const Cell*>;
 
-// a / b, with the standard error to first order.
-Estimate ratio(const Estimate& a, const Estimate& b) {
-  const double mean = a.mean / b.mean;
-  return {mean, std::fabs(mean) * std::hypot(a.standardError / a.mean, b.standardError / b.mean)};
+// "a", "a or b", "a, b or c".
+std::string alternatives(const std::vector<std::string>& names) {
+  const auto last = names.end() - 1;
+  if (names.size() == 1) return *last;
+  return fmt::format("{} or {}", fmt::join(names.begin(), last, ", "), *last);
 }
 
-Estimate relMse(const Cell& cell) { return cell.error.relMse; }
-
-// relMSE x seconds: for an unbiased strategy the relMSE after one second.
-Estimate relMseTimesSeconds(const Cell& cell) {
-  const Estimate &e = cell.error.relMse, &s = cell.seconds;
-  const double mean = e.mean * s.mean;
-  return {mean, std::hypot(e.standardError * s.mean, s.standardError * e.mean)};
-}
-
-std::vector<Contender> contenders(const StudyResults& results, const Budget& budget,
-                                  Estimate (*cost)(const Cell&)) {
-  std::vector<Contender> sorted;
-  for (const StrategyResult& strategy : results.strategies)
-    if (const Cell* cell = findCell(strategy, budget)) sorted.push_back({cell, cost(*cell)});
-  std::ranges::stable_sort(sorted, {}, [](const Contender& c) { return c.cost.mean; });
-  return sorted;
-}
-
-// "bsdf has 1.9 +- 0.2 times its relMSE", or that the difference is not significant.
-std::string lead(const Contender& best, const Contender& other, const char* metric) {
-  const Estimate times = ratio(other.cost, best.cost);
-  if (!(times.low() > 1))
-    return fmt::format("{} does not differ significantly", other.cell->strategy);
-  const EstimateText text = estimateText(times);
-  return fmt::format("{} has {} +- {} times its {}", other.cell->strategy, text.number,
-                     text.halfInterval, metric);
-}
-
-std::string winner(const std::vector<Contender>& sorted, const std::string& condition,
-                   const char* metric, const std::string& baseline) {
-  const Contender& best = sorted.front();
-  std::string sentence =
-      fmt::format("{}: {} has the smallest {}", condition, best.cell->strategy, metric);
-  if (sorted.size() > 1) sentence += "; " + lead(best, sorted[1], metric);
-  for (size_t i = 2; i < sorted.size(); ++i)
-    if (sorted[i].cell->strategy == baseline) sentence += ", " + lead(best, sorted[i], metric);
+// Which of these cells, the most efficient first, to use: the first and those that do not differ
+// from it significantly; and how far the next one is behind.
+std::string recommendation(const Cells& cells) {
+  const Cell& best = *cells.front();
+  std::vector<std::string> names{best.strategy};
+  std::string next;
+  for (const Cell* cell : cells | std::views::drop(1)) {
+    const RatioEstimate lead = relativeEfficiency(best, *cell);
+    if (!(lead.low() > 1))
+      names.push_back(cell->strategy);
+    else if (next.empty())
+      next = fmt::format("{}, the next best, has {} times the relMSE of {}", cell->strategy,
+                         ratioText(lead), best.strategy);
+  }
+  std::string sentence = fmt::format("Use {}", alternatives(names));
+  if (names.size() > 1) sentence += ": no significant difference between them at equal time";
+  if (!next.empty()) sentence += (names.size() > 1 ? "; " : ": at equal time ") + next;
   return sentence + ".";
 }
 
-std::string biasOf(const StrategyResult& strategy, bool hasNoisyReference) {
-  const EstimateText size = estimateText(strategy.squaredBias);
-  if (strategy.cells.empty()) return "";
-  if (!(strategy.squaredBias.low() > 0))
-    return fmt::format("{} is biased, but its bias is not significant{}.", strategy.name,
-                       hasNoisyReference ? " given the noise of this reference" : "");
-  std::string sentence =
-      fmt::format("{} is biased: a relMSE of {} +- {} remains with any number of samples",
-                  strategy.name, size.number, size.halfInterval);
-  if (const auto& crossing = strategy.biasEqualsNoise)
-    sentence += fmt::format("; bias exceeds noise above {} samples per pixel ({} to {})",
-                            shortNumber(crossing->samples, 2), shortNumber(crossing->low, 2),
-                            shortNumber(crossing->high, 2));
-  return sentence + ".";
+// Which of the biased cells are better than the best unbiased one, and up to where.
+std::string biasedLine(const StudyResults& results, const Cells& biased, const Cell& best) {
+  std::vector<std::string> better;
+  for (const Cell* cell : biased) {
+    const RatioEstimate lead = relativeEfficiency(*cell, best);
+    if (!(lead.low() > 1)) continue;
+    const auto row = std::ranges::find(results.strategies, cell->strategy, &StrategyResult::name);
+    const auto& crossing = row->biasEqualsNoise;
+    better.push_back(fmt::format(
+        "{} by {}{}", cell->strategy, ratioText(lead),
+        crossing ? fmt::format(" until its bias equals its noise at {} samples per pixel",
+                               shortNumber(crossing->samples, 2))
+                 : ""));
+  }
+  if (better.empty())
+    return fmt::format("Of {} biased, none is better at equal time.", biased.size());
+  return fmt::format("Of {} biased, better at equal time: {}.", biased.size(),
+                     fmt::join(better, ", "));
 }
 
 }  // namespace
 
 std::vector<std::string> verdict(const Study& study, const StudyResults& results) {
+  Cells unbiased, biased;
+  for (const Cell* cell : ranking(study, results)) {
+    if (!(cell->error.relMse.mean > 0)) continue;  // less than the noise of the reference
+    const auto row = std::ranges::find(results.strategies, cell->strategy, &StrategyResult::name);
+    (row->unbiased ? unbiased : biased).push_back(cell);
+  }
   std::vector<std::string> sentences;
-  const auto samples =
-      largestCommonBudget(study, results, [](const Budget& budget) { return !budget.timed; });
-  const auto seconds =
-      largestCommonBudget(study, results, [](const Budget& budget) { return budget.timed; });
-  const auto add = [&](const Budget& budget, Estimate (*cost)(const Cell&), const char* condition,
-                       const char* metric) {
-    sentences.push_back(winner(contenders(results, budget, cost),
-                               fmt::format("{}{})", condition, budget.label()), metric,
-                               study.baseline));
-  };
-  if (samples) add(*samples, relMse, "At equal samples (", "relMSE");
-  if (seconds)
-    add(*seconds, relMse, "At equal time (", "relMSE");
-  else if (samples)
-    add(*samples, relMseTimesSeconds, "At equal time (extrapolated from ", "relMSE x seconds");
-  for (const StrategyResult& strategy : results.strategies)
-    if (!strategy.unbiased)
-      if (std::string text = biasOf(strategy, results.referenceErrorKnown); !text.empty())
-        sentences.push_back(std::move(text));
+  if (unbiased.empty() && !biased.empty())
+    sentences = {recommendation(biased), "All of them are biased."};
+  if (!unbiased.empty()) sentences.push_back(recommendation(unbiased));
+  if (!unbiased.empty() && !biased.empty())
+    sentences.push_back(biasedLine(results, biased, *unbiased.front()));
   return sentences;
 }
 

@@ -40,15 +40,21 @@ EstimateText estimateText(const Estimate& e);
 // 0.
 std::string significantText(const Estimate& e);
 
+// The same for a mean of numbers that are not negative. Where its interval includes 0, because a
+// few numbers are most of it, the one of its logarithm is given: "690 (98 to 4800)". (Its standard
+// error exceeds the mean only if something has been subtracted.)
+std::string positiveText(const Estimate& e);
+
+std::string ratioText(const RatioEstimate& r);  // "1.39 (1.22 to 1.58)"; "1" if it is exact
+
 // `digits` significant digits, without an exponent up to 1e7.
 std::string shortNumber(double x, int digits = 3);
 
 // A summary of a comparison in words.
 
-// One sentence each: the strategy with the smallest error at equal samples, and at equal time, with
-// its lead and the confidence interval of that; for each biased strategy the size of its bias and
-// the number of samples above which bias exceeds noise. Empty if no budget has been rendered with
-// all strategies and no strategy is biased.
+// With the largest common budget, at equal time: the unbiased strategy to use, any that do not
+// differ from it significantly, and the lead over the next one; then, in one line, the biased
+// strategies that are more efficient. Empty if no budget has been rendered with all strategies.
 std::vector<std::string> verdict(const Study& study, const StudyResults& results);
 
 }  // namespace chromeball

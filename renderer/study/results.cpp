@@ -60,26 +60,26 @@ Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<Store
   return cell;
 }
 
-Estimate efficiency(const Cell& cell, const Cell& baseline) {
-  if (&cell == &baseline) return {1, 0};
-  std::vector<double> logRatios;
-  const size_t repeats = std::min(cell.repeatSeconds.size(), baseline.repeatSeconds.size());
-  for (size_t r = 0; r < repeats; ++r)
-    logRatios.push_back(std::log(baseline.repeatSeconds[r] / cell.repeatSeconds[r]));
-  const Estimate logSpeed = meanOf(logRatios);
-  const Estimate &here = cell.error.relMse, &there = baseline.error.relMse;
-  const double ratio = there.mean / here.mean * std::exp(logSpeed.mean);
-  return {ratio, ratio * std::sqrt(std::pow(here.standardError / here.mean, 2) +
-                                   std::pow(there.standardError / there.mean, 2) +
-                                   std::pow(logSpeed.standardError, 2))};
+// The unbiased strategy that is the most efficient with the largest common budget; if there is
+// none, the most efficient one, or the first.
+std::string bestBaseline(const Study& study, const StudyResults& results) {
+  const std::optional<Budget> budget = largestCommonBudget(study, results);
+  const StrategyResult* best = nullptr;
+  const auto isBetter = [&](const StrategyResult& strategy) {
+    if (!best || strategy.unbiased != best->unbiased) return !best || strategy.unbiased;
+    return relativeEfficiency(*findCell(strategy, *budget), *findCell(*best, *budget)).value > 1;
+  };
+  for (const StrategyResult& strategy : results.strategies)
+    if (budget && findCell(strategy, *budget) && isBetter(strategy)) best = &strategy;
+  return best ? best->name : study.strategies.front();
 }
 
-void compareWithBaseline(std::vector<StrategyResult>& strategies, const std::string& baseline) {
-  const auto base = std::ranges::find(strategies, baseline, &StrategyResult::name);
-  for (StrategyResult& strategy : strategies)
+void compareWithBaseline(StudyResults& results) {
+  const auto base = std::ranges::find(results.strategies, results.baseline, &StrategyResult::name);
+  for (StrategyResult& strategy : results.strategies)
     for (Cell& cell : strategy.cells) {
       const Cell* other = findCell(*base, cell.budget);
-      cell.efficiency = other ? efficiency(cell, *other) : Estimate{std::nan(""), 0};
+      cell.efficiency = other ? relativeEfficiency(cell, *other) : RatioEstimate{std::nan(""), 0};
     }
 }
 
@@ -165,10 +165,17 @@ StudyResults studyResults(const Study& study, const RenderStore& store,
       results.referenceNoise = std::sqrt(cell.error.referenceVariance);
   }
   results.complete = isComplete(study, results);
-  compareWithBaseline(results.strategies, study.baseline);
+  results.baseline = study.baseline.empty() ? bestBaseline(study, results) : study.baseline;
+  compareWithBaseline(results);
   results.pairs = comparePairs(study, store, results);
   results.warnings = warningsOf(study, results);
   return results;
+}
+
+RatioEstimate relativeEfficiency(const Cell& cell, const Cell& other) {
+  if (&cell == &other) return {1, 0};
+  return ratio(other.error.relMse, cell.error.relMse) *
+         pairedRatio(other.repeatSeconds, cell.repeatSeconds);
 }
 
 const Cell* findCell(const StrategyResult& strategy, const Budget& budget) {

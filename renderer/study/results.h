@@ -23,11 +23,13 @@ struct Cell {
   double prepareSeconds = 0;          // time to build the strategy, once for all its renders
   double noise = 0;                   // mean of the noise that the renders themselves report
   double invalidSamples = 0;          // sum over the repeats
-  // 1 / (relMse seconds), divided by the baseline's value for the same budget. Times are compared
-  // repeat by repeat: strategies alternate, so that a machine whose speed drifts slows all
-  // strategies of a repeat alike.
-  Estimate efficiency;
+  RatioEstimate efficiency;           // relative to the baseline with the same budget
 };
+
+// 1 / (relMse seconds) of `cell` over that of `other`. Times are compared repeat by repeat:
+// strategies alternate, so that a machine whose speed drifts slows all strategies of a repeat
+// alike.
+RatioEstimate relativeEfficiency(const Cell& cell, const Cell& other);
 
 struct StrategyResult {
   std::string name;
@@ -53,6 +55,9 @@ struct StudyResults {
   bool referenceErrorKnown = true;
   double referenceNoise = 0;  // relative standard error of its mean pixel
   std::vector<StrategyResult> strategies;
+  // The one whose efficiency is 1: that of the study, or the unbiased one that is the most
+  // efficient with the largest common budget. Its noise blurs all other efficiencies.
+  std::string baseline;
   std::vector<PairResult> pairs;      // all pairs of comparable unbiased strategies
   std::vector<std::string> warnings;  // reasons to distrust some of the numbers
   bool complete = true;               // whether every cell of this run exists

@@ -39,7 +39,7 @@ struct Study {
   std::vector<std::string> strategies;  // to render; names of rows
   std::vector<Budget> budgets;          // to render; ascending
   int repeats = 4;                      // of each strategy and budget
-  std::string baseline;                 // one of the strategies
+  std::string baseline;                 // one of the strategies; empty: the results choose it
 
   // Strategies and budgets in the results: the above, and the ones that earlier runs left in the
   // folder.

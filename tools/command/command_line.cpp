@@ -135,8 +135,9 @@ int run(int argc, char** argv) {
       {addProbeInfoCommand, addProbeConvertCommand, addProbeConvolveCommand,
        addProbeAssembleCommand, addProbeReflectivityCommand, addProbeSynthCommand,
        addProbeEditCommand, addProbeMergeCommand, addProbeSunCommand, addProbeSplitCommand,
-       addProbeAddSunCommand, addProbeAlignCommand, addProbeStitchCommand,
-       addProbeIrradianceCommand, addProbeRaysCommand, addProbePlotCommand});
+       addProbeAddSunCommand, addProbeAlignCommand, addProbeStitchCommand, addProbeCropCommand,
+       addProbeSpheresCommand, addProbeIrradianceCommand, addProbeRaysCommand,
+       addProbePlotCommand});
   addCommands(
       command.addCommand("image", "View and compare images.").requiresCommand(),
       {addImageDenoiseCommand, addImageDevelopCommand, addImageDivideCommand, addImageErrorCommand,

@@ -32,6 +32,8 @@ void addProbeSplitCommand(Command probe);
 void addProbeAddSunCommand(Command probe);
 void addProbeAlignCommand(Command probe);
 void addProbeStitchCommand(Command probe);
+void addProbeCropCommand(Command probe);
+void addProbeSpheresCommand(Command probe);
 void addProbeIrradianceCommand(Command probe);
 void addProbeRaysCommand(Command probe);
 void addProbePlotCommand(Command probe);

@@ -132,11 +132,11 @@ Study planStudy(const CompareArguments& a, const Command& command, Messages& not
   if (a.repeats < Study::kMinRepeats)
     throwInput("--repeats: {} is not {} or more", a.repeats, Study::kMinRepeats);
   study.repeats = a.repeats;
-  study.baseline = a.baseline.empty()
-                       ? study.strategies.front()
-                       : standIn(rowNamed(a.baseline, "--baseline").name(), study.strategies);
-  if (std::count(study.strategies.begin(), study.strategies.end(), study.baseline) == 0)
-    throwInput("--baseline: `{}` is not among the compared strategies", a.baseline);
+  if (!a.baseline.empty()) {
+    study.baseline = standIn(rowNamed(a.baseline, "--baseline").name(), study.strategies);
+    if (std::ranges::count(study.strategies, study.baseline) == 0)
+      throwInput("--baseline: `{}` is not among the compared strategies", a.baseline);
+  }
   study.referenceFile = a.reference;
   if (!a.reference.empty())
     command.refuse({"--reference-samples", "--reference-strategy"},
@@ -284,7 +284,8 @@ void addCompareCommand(Command app) {
                     "Samples per pixel of a reference that is rendered");
   command.addWithDefault("--reference-strategy", a.referenceStrategy,
                          "Strategy of a reference that is rendered");
-  command.addOption("--baseline", a.baseline, "Strategy whose efficiency is 1 (the first)");
+  command.addOption("--baseline", a.baseline,
+                    "Strategy whose efficiency is 1; else the best unbiased one");
   command.addRequired("-o,--output", a.folder,
                       "Folder of the report; a comparison in it is continued");
 }

@@ -76,12 +76,7 @@ std::string verdictList(const Study& study, const StudyResults& results) {
   const std::vector<std::string> sentences = verdict(study, results);
   if (sentences.empty()) return "";
   std::string html = "<ul id=\"verdict\">\n";
-  for (const std::string& sentence : sentences) {
-    std::string text = escaped(sentence);
-    for (size_t at = 0; (at = text.find("+-", at)) != std::string::npos;)
-      text.replace(at, 2, "&plusmn;");
-    html += "<li>" + text + "</li>\n";
-  }
+  for (const std::string& sentence : sentences) html += "<li>" + escaped(sentence) + "</li>\n";
   return html + "</ul>\n";
 }
 
@@ -104,21 +99,25 @@ std::string referenceText(const Study& study, const StudyResults& results) {
                      100 * results.referenceNoise);
 }
 
-std::string plusMinus(const EstimateText& e) {
-  if (e.halfInterval == "0") return e.number;
-  return fmt::format("{} <span class=\"soft\">&plusmn; {}</span>", e.number, e.halfInterval);
+// What follows the number is soft.
+std::string softened(const std::string& text) {
+  const size_t space = text.starts_with("not significant") ? 0 : text.find(' ');
+  if (space == std::string::npos) return text;
+  std::string soft = text.substr(space);
+  if (const size_t sign = soft.find("+-"); sign != std::string::npos)
+    soft.replace(sign, 2, "&plusmn;");
+  return fmt::format("{}<span class=\"soft\">{}</span>", text.substr(0, space), soft);
 }
-std::string plusMinus(const Estimate& e) { return plusMinus(estimateText(e)); }
 
-// The text of a number that means nothing if it may be 0.
-std::string significant(const Estimate& e) {
+std::string plusMinus(const Estimate& e) {
   const EstimateText text = estimateText(e);
-  if (text.isSignificant) return plusMinus(text);
-  return fmt::format("<span class=\"soft\">not significant &plusmn; {}</span>", text.halfInterval);
+  return softened(text.halfInterval == "0"
+                      ? text.number
+                      : fmt::format("{} +- {}", text.number, text.halfInterval));
 }
 
 std::string row(const Cell& cell, const StrategyResult& strategy, double mostEfficient) {
-  const double width = 70 * std::max(0.0, cell.efficiency.mean / mostEfficient);
+  const double width = 70 * std::max(0.0, cell.efficiency.value / mostEfficient);
   std::string crossing = "none detected";
   if (strategy.unbiased) crossing = "unbiased";
   if (const auto& c = strategy.biasEqualsNoise)
@@ -127,12 +126,14 @@ std::string row(const Cell& cell, const StrategyResult& strategy, double mostEff
   return fmt::format(
       "<tr data-strategy=\"{0}\"><td>{0}</td><td class=\"bars\"><span class=\"bar\" "
       "style=\"width:{1:.0f}px\"></span></td><td>{2}</td><td>{3}</td><td>{4}</td><td>{5:.3f}</"
-      "td><td>{6}</td><td>{7}</td><td>{8}</td><td>{9}</td></tr>\n",
-      escaped(cell.strategy), width, significant(cell.efficiency), significant(cell.error.relMse),
-      plusMinus(cell.seconds), cell.prepareSeconds,
-      significant({100 * cell.error.bias.mean, 100 * cell.error.bias.standardError}),
+      "td><td>{6}</td><td>{7}</td><td>{8}</td><td>{9}</td><td>{10}</td></tr>\n",
+      escaped(cell.strategy), width, softened(ratioText(cell.efficiency)),
+      softened(positiveText(cell.error.relMse)), softened(positiveText(cell.seconds)),
+      cell.prepareSeconds,
+      softened(significantText({100 * cell.error.bias.mean, 100 * cell.error.bias.standardError})),
       strategy.variance ? plusMinus(strategy.variance->slope) : "",
-      strategy.relMse ? plusMinus(strategy.relMse->slope) : "", crossing);
+      strategy.relMse ? plusMinus(strategy.relMse->slope) : "",
+      strategy.unbiased ? "" : softened(significantText(strategy.squaredBias)), crossing);
 }
 
 // The strategies with the largest common budget, the most efficient first.
@@ -141,13 +142,13 @@ std::string resultsHtml(const Study& study, const StudyResults& results) {
       "<table "
       "id=\"results\"><thead><tr><th>strategy</th><th></th><th>efficiency</th><th>relMSE</"
       "th><th>seconds</th><th>preparation,<br>seconds</th><th>bias, %</th><th>slope "
-      "of<br>variance</th><th>slope of<br>relMSE</th><th>bias = noise<br>at "
-      "samples</th></tr></thead><tbody>\n";
+      "of<br>variance</th><th>slope of<br>relMSE</th><th>relMSE<br>of bias</th><th>bias = "
+      "noise<br>at samples</th></tr></thead><tbody>\n";
   const std::vector<const Cell*> cells = ranking(study, results);
   for (const Cell* cell : cells)
     for (const StrategyResult& strategy : results.strategies)
       if (strategy.name == cell->strategy)
-        html += row(*cell, strategy, cells.front()->efficiency.mean);
+        html += row(*cell, strategy, cells.front()->efficiency.value);
   return html + "</tbody></table>\n";
 }
 
@@ -197,9 +198,10 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
            fmt::format("With {}, the most efficient first. Efficiency is 1 / (relMSE x seconds), "
                        "relative to {}: of two unbiased strategies, one with twice the efficiency "
                        "needs half the time for the same error. The number after +- is half the "
-                       "95% confidence interval; not significant: the interval includes 0. Slopes "
+                       "95% confidence interval, which is in brackets where it is one of the "
+                       "logarithm; not significant: the interval includes 0. Slopes "
                        "are of log error against log samples: -1 for independent samples.",
-                       at, study.baseline)));
+                       at, results.baseline)));
   fill(page, "table", resultsHtml(study, results));
   fill(page, "pairsNote",
        escaped(fmt::format(
@@ -225,6 +227,7 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
        "any of them. Seconds are render time alone. Every render has its own seed, and the "
        "reference shares none of them. All numbers are in <code>results.csv</code> and "
        "<code>results.json</code>, all renders in <code>renders/</code>.");
+  fill(page, "budget", at);
   fill(page, "data", jsonText(reportImages(store, results)));
   fill(page, "script", kReportScript);
   return page;

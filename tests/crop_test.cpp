@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Perspective crops of a probe: the directions of their pixels, and back through `probe stitch`.
+#include "probe/crop.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "image/io/read_image.h"
+#include "image/io/write_image.h"
+#include "probe/synth.h"
+#include "run_command.h"
+
+namespace chromeball::crop_test {
+namespace {
+
+using glm::dvec3;
+
+void expectNear(const dvec3& a, const dvec3& b) { EXPECT_LT(glm::distance(a, b), 1e-6); }
+
+PinholeView viewOf(const Rotation::Angles& angles) {
+  return {Rotation::ofAngles(angles), 60, {40, 20}};
+}
+
+TEST(Crop, PixelsShowTheirDirections) {
+  constexpr double kTangent = 0.5773502691896258;  // of half the field of view, 30 degrees
+  expectNear(viewOf({0, 0, 0}).direction(20, 10), {0, 0, -1});
+  expectNear(viewOf({90, 0, 0}).direction(20, 10), {-1, 0, 0});
+  expectNear(viewOf({0, 90, 0}).direction(20, 10), {0, 1, 0});
+  expectNear(viewOf({0, 0, 0}).direction(20, 0), {0, 0.5, -std::sqrt(0.75)});
+  expectNear(viewOf({0, 0, 0}).direction(40, 10), glm::normalize(dvec3(2 * kTangent, 0, -1)));
+  // A roll by a quarter lifts the camera's right to the top.
+  expectNear(viewOf({0, 0, 90}).direction(40, 10), glm::normalize(dvec3(0, 2 * kTangent, -1)));
+}
+
+// Radiance 1 + slope . D: a pixel's is that of its direction, up to the map's interpolation and
+// the mean over the pixel.
+TEST(Crop, PixelsHaveTheRadianceOfTheirDirections) {
+  const dvec3 slope(0.3, -0.5, 0.4);
+  const Image map = gradientProbe({512, 256}, Rgb(1), slope);
+  for (const Rotation::Angles& pose : {Rotation::Angles{0, 0, 0}, Rotation::Angles{130, 50, -25},
+                                       Rotation::Angles{-60, -80, 10}}) {
+    const PinholeView view = viewOf(pose);
+    const Image image = crop(map, view);
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        EXPECT_NEAR(image.rgb(x, y).y, 1 + glm::dot(slope, view.direction(x + 0.5, y + 0.5)), 1e-3);
+  }
+}
+
+TEST(Crop, PixelsInTheMiddleAreAsWideAsTexels) {
+  const Image map(512, 256, 3);
+  const PinholeView view{{}, 50, {100, rowsOfCrop(map, 50)}};
+  EXPECT_NEAR(view.pixelAngle() / (kPiD / 256), 1, 0.01);
+}
+
+// Six crops that overlap give the probe back.
+TEST(CommandProbeCrop, StitchingGivesTheProbeBack) {
+  const TemporaryFolder folder;
+  const Image map = gradientProbe({64, 32}, Rgb(1, 2, 3), {0.3, -0.5, 0.4});
+  writeImage(folder / "probe.exr", map);
+  std::ofstream list(folder / "tiles.toml");
+  list << "fov = 100\n";
+  int count = 0;
+  for (const auto& [yaw, pitch] :
+       {std::pair{0, 0}, {90, 0}, {180, 0}, {-90, 0}, {30, 90}, {-20, -90}}) {
+    const std::string name = fmt::format("{}.exr", count++), y = fmt::format("{}", yaw),
+                      p = fmt::format("{}", pitch);
+    const CommandResult result =
+        runCommand({"probe", "crop", folder / "probe.exr", folder / name, "--fov", "100", "--yaw",
+                    y, "--pitch", p, "--roll", "20", "--size", "64x64"});
+    ASSERT_EQ(result.status, 0) << result.error;
+    list << "[[tile]]\nfile = '" << name << "'\nyaw = " << y << "\npitch = " << p
+         << "\nroll = 20\n";
+  }
+  list.close();
+  const CommandResult result =
+      runCommand({"probe", "stitch", folder / "tiles.toml", "-o", folder / "back.exr", "--size",
+                  "64x32", "--same-exposure"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  EXPECT_EQ(result.error.find("in no tile"), std::string::npos) << result.error;
+  const Image back = readImage(folder / "back.exr");
+  for (size_t i = 0; i < map.texels.size(); ++i)
+    EXPECT_NEAR(back.texels[i] / map.texels[i], 1, 0.01) << i / 3 % 64 << " " << i / 3 / 64;
+}
+
+TEST(CommandProbeCrop, RefusesWhatIsNoView) {
+  const TemporaryFolder folder;
+  writeImage(folder / "probe.exr", constantProbe({16, 8}, Rgb(1)));
+  const auto with = [&](const std::string& option, const std::string& value) {
+    return std::vector<std::string>{"probe", "crop", folder / "probe.exr", folder / "out.exr",
+                                    option,  value};
+  };
+  for (const char* fov : {"0", "180", "-20", "nan"}) expectError(with("--fov", fov), "--fov");
+  expectError(with("--size", "0x5"), "--size");
+  expectError(with("--yaw", "inf"), "finite");
+  expectError({"probe", "crop", folder / "probe.exr", folder / "probe.exr"}, "probe.exr");
+}
+
+}  // namespace
+}  // namespace chromeball::crop_test
