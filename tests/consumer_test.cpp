@@ -123,7 +123,9 @@ TEST(SlowConsumer, InstalledFilesAreComplete) {
   for (const char* file :
        {"bin/chromeball", "share/man/man1/chromeball.1", "share/doc/chromeball/LICENSE",
         "share/bash-completion/completions/chromeball", "share/zsh/site-functions/_chromeball",
-        "share/fish/vendor_completions.d/chromeball.fish", "include/chromeball/render.h"})
+        "share/zsh/vendor-completions/_chromeball",
+        "share/fish/vendor_completions.d/chromeball.fish", "share/chromeball/still-life.glb",
+        "share/chromeball/dusk.exr", "include/chromeball/render.h"})
     EXPECT_TRUE(fs::exists(prefix / file)) << file;
 }
 

@@ -263,7 +263,8 @@ TEST(House, SourcesStartWithTheirLicence) {
       "^(#!.*\n)?(//|#|\\.\\\\\"|<!--) SPDX-License-Identifier: Apache-2\\.0( -->)?\n";
   std::vector<fs::path> files =
       projectFiles({".h", ".cpp", ".in", ".cmake", ".sh", ".py", ".js", ".bash", ".fish", ".1"});
-  files.insert(files.end(), {"CMakeLists.txt", "tests/consumer/CMakeLists.txt", ".ci/run"});
+  files.insert(files.end(),
+               {"CMakeLists.txt", "tests/consumer/CMakeLists.txt", ".ci/run", "Dockerfile"});
   for (const fs::path& path : files) {
     EXPECT_TRUE(containsMatch(contents(kSourceDir / path), kSpdx))
         << path << ": the first line (after #!) must be SPDX-License-Identifier: Apache-2.0";
@@ -286,18 +287,10 @@ TEST(House, EachFileOfTestsHasANamespaceOfItsName) {
 }
 
 TEST(House, TopLevelHasOnlyListedFiles) {
-  const std::set<std::string> allowed = {"renderer",
-                                         "tools",
-                                         "tests",
-                                         "scenes",
-                                         "probes",
-                                         "docs",
-                                         "CMakeLists.txt",
-                                         "README.md",
-                                         "LICENSE",
-                                         "CHANGELOG.md",
-                                         "CMakePresets.json",
-                                         "CONTRIBUTING.md"};
+  const std::set<std::string> allowed = {
+      "renderer",       "tools",      "tests",     "scenes",  "probes",       "docs",
+      "CMakeLists.txt", "Dockerfile", "README.md", "LICENSE", "CHANGELOG.md", "CMakePresets.json",
+      "CONTRIBUTING.md"};
   for (const auto& entry : fs::directory_iterator(kSourceDir)) {
     const std::string name = entry.path().filename().string();
     const bool generated = entry.is_directory() && (name.starts_with("build") || name == "out");

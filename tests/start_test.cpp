@@ -109,6 +109,7 @@ TEST(SlowStart, WithoutTheModuleATiffIsRefusedByName) {
   EXPECT_EQ(WEXITSTATUS(refused), 2);
   const std::string error = fileContents(folder / "error");
   EXPECT_NE(error.find(kModule), std::string::npos) << error;
+  EXPECT_NE(error.find("chromeball-tiff"), std::string::npos) << error;
   EXPECT_NE(error.find("a.tif"), std::string::npos) << error;
   EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
 }

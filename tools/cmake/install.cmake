@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME chromeball)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/chromeball)
 install(TARGETS chromeball_renderer EXPORT chromeball-targets
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(TARGETS chromeball_imageio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS chromeball_imageio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT tiff)
 install(DIRECTORY ${chromeball_include_dir}/chromeball TYPE INCLUDE)
 install(EXPORT chromeball-targets NAMESPACE chromeball:: DESTINATION ${package_dir})
 
@@ -28,7 +29,14 @@ if(TARGET chromeball)
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES tools/completion/_chromeball
           DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES tools/completion/_chromeball  # the folder of packages, in Debian
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
   install(FILES tools/completion/chromeball.fish
           DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  # For a first picture.
+  install(FILES scenes/models/still-life.glb probes/dusk.exr DESTINATION ${CMAKE_INSTALL_DATADIR}/chromeball)
 endif()
 install(FILES LICENSE TYPE DOC)
+if(PROJECT_IS_TOP_LEVEL)
+  include(tools/cmake/package.cmake)
+endif()

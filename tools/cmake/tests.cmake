@@ -40,3 +40,13 @@ if(TARGET make_demo)
   add_dependencies(tests make_demo)
 endif()
 gtest_discover_tests(tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+
+# Not in the suite: ctest --preset package.
+add_test(NAME package_release COMMAND ${PROJECT_SOURCE_DIR}/tools/scripts/release.sh CONFIGURATIONS Package)
+set_tests_properties(package_release PROPERTIES LABELS package FIXTURES_SETUP release TIMEOUT 7200)
+foreach(case deb tarball ubuntu dockerfile)
+  add_test(NAME package_${case} COMMAND ${PROJECT_SOURCE_DIR}/tools/scripts/test_package.sh ${case}
+           CONFIGURATIONS Package)
+  set_tests_properties(package_${case} PROPERTIES LABELS package FIXTURES_REQUIRED release RUN_SERIAL ON
+                       SKIP_RETURN_CODE 77 TIMEOUT 7200)
+endforeach()
