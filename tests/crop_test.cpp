@@ -59,18 +59,18 @@ TEST(Crop, PixelsInTheMiddleAreAsWideAsTexels) {
 // Six crops that overlap give the probe back.
 TEST(CommandProbeCrop, StitchingGivesTheProbeBack) {
   const TemporaryFolder folder;
-  const Image map = gradientProbe({64, 32}, Rgb(1, 2, 3), {0.3, -0.5, 0.4});
+  const Image map = gradientProbe({128, 64}, Rgb(1, 2, 3), {0.3, -0.5, 0.4});
   writeImage(folder / "probe.exr", map);
   std::ofstream list(folder / "tiles.toml");
-  list << "fov = 100\n";
+  list << "fov = 120\n";
   int count = 0;
   for (const auto& [yaw, pitch] :
        {std::pair{0, 0}, {90, 0}, {180, 0}, {-90, 0}, {30, 90}, {-20, -90}}) {
     const std::string name = fmt::format("{}.exr", count++), y = fmt::format("{}", yaw),
                       p = fmt::format("{}", pitch);
     const CommandResult result =
-        runCommand({"probe", "crop", folder / "probe.exr", folder / name, "--fov", "100", "--yaw",
-                    y, "--pitch", p, "--roll", "20", "--size", "64x64"});
+        runCommand({"probe", "crop", folder / "probe.exr", folder / name, "--fov", "120", "--yaw",
+                    y, "--pitch", p, "--roll", "20", "--size", "96x96"});
     ASSERT_EQ(result.status, 0) << result.error;
     list << "[[tile]]\nfile = '" << name << "'\nyaw = " << y << "\npitch = " << p
          << "\nroll = 20\n";
@@ -78,12 +78,13 @@ TEST(CommandProbeCrop, StitchingGivesTheProbeBack) {
   list.close();
   const CommandResult result =
       runCommand({"probe", "stitch", folder / "tiles.toml", "-o", folder / "back.exr", "--size",
-                  "64x32", "--same-exposure"});
+                  "128x64", "--same-exposure"});
   ASSERT_EQ(result.status, 0) << result.error;
   EXPECT_EQ(result.error.find("in no tile"), std::string::npos) << result.error;
   const Image back = readImage(folder / "back.exr");
+  ASSERT_EQ(back.texels.size(), map.texels.size());
   for (size_t i = 0; i < map.texels.size(); ++i)
-    EXPECT_NEAR(back.texels[i] / map.texels[i], 1, 0.01) << i / 3 % 64 << " " << i / 3 / 64;
+    EXPECT_NEAR(back.texels[i] / map.texels[i], 1, 0.01) << i / 3 % 128 << " " << i / 3 / 128;
 }
 
 TEST(CommandProbeCrop, RefusesWhatIsNoView) {

@@ -19,7 +19,7 @@
 namespace chromeball::estimate_error_test {
 namespace {
 
-constexpr int kDiameter = 16;
+constexpr int kDiameter = 12;
 
 Image sphereMask(int diameter) {
   Image mask(diameter, diameter, 1);

@@ -24,7 +24,7 @@ _chromeball() {
     'relight')
       options='--help --images --directions --irradiance --probe --mapping --rotation --scale --domain --keep --keep-light --reflectance-function --output --preview --white --view --allow-external --memory --exposure --tonemap --quiet' ;;
     'probe')
-      words='info convert convolve assemble reflectivity synth edit merge sun split add-sun align stitch irradiance rays plot'
+      words='info convert convolve assemble reflectivity synth edit merge sun split add-sun align stitch crop spheres irradiance rays plot'
       options='--help' ;;
     'probe info')
       options='--help --mapping --rotation --json --mapping-report' ;;
@@ -52,6 +52,10 @@ _chromeball() {
       options='--help --output --json --mapping-a --mapping-b' ;;
     'probe stitch')
       options='--help --output --size --refine --poses --same-exposure' ;;
+    'probe crop')
+      options='--help --fov --yaw --pitch --roll --size --mapping' ;;
+    'probe spheres')
+      options='--help --json --output --size --mapping-predicted --mapping-true' ;;
     'probe irradiance')
       options='--help --size --method --rotation --mapping' ;;
     'probe rays')
