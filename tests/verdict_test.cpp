@@ -80,7 +80,8 @@ TEST(Verdict, HasOneLineForTheBiased) {
       << found[1];
   EXPECT_TRUE(contains(found[1], "at 120 samples per pixel")) << found[1];
   EXPECT_FALSE(contains(found[1], "penrose")) << found[1];
-  EXPECT_EQ(verdictOf({best, worse})[1], "Of 1 biased, none is better at equal time.");
+  EXPECT_EQ(verdictOf({best, worse})[1],
+            "Of 1 biased, none is significantly better at equal time.");
   EXPECT_EQ(verdictOf({better, worse})[1], "All of them are biased.");
 }
 

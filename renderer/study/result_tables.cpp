@@ -244,7 +244,7 @@ std::string biasedLine(const StudyResults& results, const Cells& biased, const C
                  : ""));
   }
   if (better.empty())
-    return fmt::format("Of {} biased, none is better at equal time.", biased.size());
+    return fmt::format("Of {} biased, none is significantly better at equal time.", biased.size());
   return fmt::format("Of {} biased, better at equal time: {}.", biased.size(),
                      fmt::join(better, ", "));
 }
