@@ -185,7 +185,7 @@ TEST(SlowSequence, SurvivesInterruption) {
       words(model.scene(),
             {"--frames", "0:1", "--checkpoint", out / "frame.#.checkpoint.exr", "--progress"},
             out / "frame.#.exr", samples);
-  const CommandResult stopped = runExecutable(frames, "2%");
+  const CommandResult stopped = runExecutable(frames, "samples, noise");
   EXPECT_EQ(stopped.status, 130) << stopped.error;
   EXPECT_EQ(out.files(), (Words{"frame.0.checkpoint.exr"}));
   frames.push_back("--resume");

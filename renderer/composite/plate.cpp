@@ -10,12 +10,10 @@
 
 namespace chromeball {
 
-Image readPlate(const std::string& path, Messages* messages) {
+Image readPlate(const std::string& path, Messages* messages, Messages* decoding) {
   ImageFile file = readImageFile(path);
-  if (messages) {
-    messages->insert(messages->end(), file.messages.begin(), file.messages.end());
-    if (file.integers) addNote(*messages, "{}: {}", path, decodingInWords(file));
-  }
+  if (messages) messages->insert(messages->end(), file.messages.begin(), file.messages.end());
+  if (decoding && file.integers) addNote(*decoding, "{}: {}", path, decodingInWords(file));
   Image plate = colorOf(std::move(file), path);
   size_t invalid = 0;
   int x = 0, y = 0;

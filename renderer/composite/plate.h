@@ -14,9 +14,10 @@
 namespace chromeball {
 
 // Linear radiance, three channels. Files of integers are decoded from sRGB unless they state
-// another curve. Throws InputError if the file is not an image or has a pixel that is
-// not finite.
-Image readPlate(const std::string& path, Messages* messages = nullptr);  // and how it was decoded
+// another curve. `messages` gets the reader's, `decoding` how integers were decoded. Throws
+// InputError if the file is not an image or has a pixel that is not finite.
+Image readPlate(const std::string& path, Messages* messages = nullptr,
+                Messages* decoding = nullptr);
 
 // Resamples with a box filter. The aspect ratios must agree to within half a pixel of either
 // dimension, otherwise throws InputError (message beginning with `name`). An image of the requested

@@ -42,7 +42,7 @@ void planPlate(const Settings& s, RenderDescription& description) {
   CompositeDescription& composite = *description.composite;
   composite.mode = s.choice<CompositeMode>("composite.mode");
   composite.plateFile = s.get<std::string>("composite.plate");
-  const Image plate = readPlate(*composite.plateFile, &composite.messages);
+  const Image plate = readPlate(*composite.plateFile, &composite.messages, &composite.messages);
   std::optional<ImageSize>& size = description.size;
   if (!size) size = ImageSize{plate.width, plate.height};
   composite.plate = scaledPlate(plate, size->width, size->height, *composite.plateFile);
