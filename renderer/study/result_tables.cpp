@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
+#include <span>
 
 #include "base/json.h"
 #include "base/json_text.h"
@@ -215,7 +215,7 @@ std::string recommendation(const Cells& cells) {
   const Cell& best = *cells.front();
   std::vector<std::string> names{best.strategy};
   std::string next;
-  for (const Cell* cell : cells | std::views::drop(1)) {
+  for (const Cell* cell : std::span(cells).subspan(1)) {
     const RatioEstimate lead = relativeEfficiency(best, *cell);
     if (!(lead.low() > 1))
       names.push_back(cell->strategy);
