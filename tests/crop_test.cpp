@@ -87,6 +87,16 @@ TEST(CommandProbeCrop, StitchingGivesTheProbeBack) {
     EXPECT_NEAR(back.texels[i] / map.texels[i], 1, 0.01) << i / 3 % 128 << " " << i / 3 / 128;
 }
 
+TEST(CommandProbeCrop, NamesWhatAPngClips) {
+  const TemporaryFolder folder;
+  writeImage(folder / "probe.exr", constantProbe({16, 8}, Rgb(2, 0.5f, 0.5f)));
+  const auto said = [&](const char* out) {
+    return runCommand({"probe", "crop", folder / "probe.exr", folder / out, "--size", "8x8"}).error;
+  };
+  EXPECT_NE(said("a.png").find("33.3% of the channels are above 1"), std::string::npos);
+  EXPECT_EQ(said("a.exr").find("above 1"), std::string::npos);
+}
+
 TEST(CommandProbeCrop, RefusesWhatIsNoView) {
   const TemporaryFolder folder;
   writeImage(folder / "probe.exr", constantProbe({16, 8}, Rgb(1)));

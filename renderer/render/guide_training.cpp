@@ -113,6 +113,7 @@ void GuideTraining::end(const PixelErrors& errors, uint32_t samples) {
   setTrained();
 }
 
+// All guides have learned from at most lastSample_ samples; a resumed render sets the same number.
 void GuideTraining::setTrained() {
   records_ = {};
   taught_ = hasBegun_ ? lastSample_ : 0;

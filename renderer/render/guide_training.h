@@ -55,7 +55,7 @@ class GuideTraining {
   // so far, with `samples` per pixel. Does nothing if the training has ended before.
   void end(const PixelErrors& errors, uint32_t samples);
   bool hasEnded() const { return records_.empty(); }
-  // How many samples per pixel the guides have learned from; 0: nothing is guided. Later samples of
+  // How many samples per pixel, at most, taught the guides; 0: nothing is guided. Later samples of
   // a pixel must be independent of these: its next points of the same sequence would fill the gaps
   // between the first, to which the guide has adapted, and be biased.
   uint32_t taught() const { return taught_; }

@@ -64,7 +64,7 @@ double PixelRenderer::fractionOfHits() const {
 
 void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uint32_t to,
                            const Beam& beam, uint32_t randomization) const {
-  const uint64_t blocks = uint64_t(randomization) << 32;  // no render has as many
+  const uint64_t firstBlock = uint64_t(randomization) << 32;  // no render has as many
   const float u = (float(window_.x + x) + 0.5f) / float(settings_.width);
   const float v = (float(window_.y + y) + 0.5f) / float(settings_.height);
   const Beam own = cameraRays_.beamAt(beam, u, v);
@@ -76,7 +76,7 @@ void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uin
           block.x = x, block.y = y, block.half = half, block.run = run, block.sums = {};
           worker.context.sampler.set(
               block.numbers, uint32_t(window_.x + x), uint32_t(window_.y + y),
-              blocks + Film::kHalves * run.table + uint64_t(half), run.first, run.stride);
+              firstBlock + Film::kHalves * run.table + uint64_t(half), run.first, run.stride);
           addBlock(worker, own);
         });
 }

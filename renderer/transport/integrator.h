@@ -85,8 +85,8 @@ class PathIntegrator : public Integrator {
   PathTracer tracer_;
 };
 
-// Paths that are traced together, a vertex of each at a time: their rays form packets,
-// and their reads from the probe's tables and the meshes overlap.
+// Paths that are traced together, a vertex of each at a time: their rays form packets, and their
+// reads from the probe's tables and the meshes overlap.
 
 // Gives the same estimates as PathTracer::radiance(). A batch is reused for the next paths, since
 // clearing its arrays would take a noticeable part of the time.

@@ -53,7 +53,7 @@ LeanPoint leanPointAt(const Mesh& mesh, const Hit& hit, const vec3& wo) {
   return s;
 }
 
-// Up to 16 paths, a vertex of each at a time, as in PathBatch.
+// Several paths, a vertex of each at a time, as in PathBatch.
 class LeanBatch {
  public:
   explicit LeanBatch(const LeanScene& scene) : scene_(scene) {}

@@ -28,15 +28,15 @@ void warnOfLostMapping(const std::string& file, const Image& map, Mapping mappin
       isLens ? "" : " or `[probe] mapping`");
 }
 
-void warnOfClipping(const std::string& file, const Image& map) {
-  const auto clipped = std::count_if(map.texels.begin(), map.texels.end(),
-                                     [](float channel) { return channel > 1; });
+}  // namespace
+
+void warnOfClipping(const std::string& file, const Image& image) {
+  if (lowerExtension(file) != ".png") return;
+  const auto clipped = std::ranges::count_if(image.texels, [](float x) { return x > 1; });
   if (clipped > 0)
     warn("{}: {:.3g}% of the channels are above 1, and clipped; an .exr holds them", file,
-         100. * double(clipped) / double(map.texels.size()));
+         100. * double(clipped) / double(image.texels.size()));
 }
-
-}  // namespace
 
 ImageFile openImageFile(const std::filesystem::path& path, IntegerTexels integers) {
   ImageFile file = readImageFile(path, integers);
@@ -75,10 +75,6 @@ void writeKept(const std::string& out, OutputImage output, const std::string& in
   print(writeImage(out, output, transform));
 }
 
-void warnOfClippedLight(const ImageFile& file, const std::string& path) {
-  for (const Message& message : clippedLight(file, path)) print({message});
-}
-
 LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option) {
   LoadedProbe probe = loadProbe(path, mapping, option);
   print(probeMessages(probe, path));
@@ -97,7 +93,7 @@ void writeProbe(const std::string& file, const Image& map, Mapping mapping) {
                    OutputImage{{{"", "RGB", map}}, {{kMappingAttribute, mappingName(mapping)}}}));
   if (kind == ".exr" || kind == ".hdr") return;
   warnOfLostMapping(file, map, mapping);
-  if (kind == ".png") warnOfClipping(file, map);
+  warnOfClipping(file, map);
 }
 
 }  // namespace chromeball

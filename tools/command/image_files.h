@@ -30,9 +30,8 @@ Metadata keptMetadata(Metadata metadata, const std::string& in, const std::strin
 void writeKept(const std::string& out, OutputImage output, const std::string& in,
                const DisplayTransform& transform = {});
 
-// Warns of a file whose brightest light is lost: integers, clipped at white; pixels marked in the
-// layer `clipped` of merged photographs.
-void warnOfClippedLight(const ImageFile& file, const std::string& path);
+// Warns of channels above 1 if the file to write is a .png.
+void warnOfClipping(const std::string& file, const Image& image);
 
 LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option);
 

@@ -36,6 +36,7 @@ void run(const ProbeCropArguments& arguments) {
   const Image image = crop(latLong, {pose, arguments.fov, size});
   print(
       writeImage(arguments.out, OutputImage{{{"", "RGB", image}}, {{"cameraFov", arguments.fov}}}));
+  warnOfClipping(arguments.out, image);
 }
 
 }  // namespace

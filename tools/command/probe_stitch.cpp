@@ -27,7 +27,7 @@ std::vector<Tile> loadTiles(const std::vector<TileEntry>& entries) {
   std::vector<Tile> tiles;
   for (const TileEntry& entry : entries) {
     ImageFile file = openImageFile(entry.file);
-    warnOfClippedLight(file, entry.file);
+    print(clippedLight(file, entry.file));
     tiles.push_back({entry.file, colorOf(std::move(file), entry.file),
                      Rotation::ofAngles(entry.pose), entry.fov});
     for (const float channel : tiles.back().image.texels)

@@ -65,8 +65,7 @@ std::unique_ptr<ModuleImage> openModuleImage(const char* format, std::span<const
   if (!module.open)
     throwInput(
         "{}: is a {} file, which needs the module {} beside the command or the library, as the "
-        "package "
-        "chromeball-tiff installs it ({}); convert the image to .exr or .png",
+        "package chromeball-tiff installs it ({}); convert the image to .exr or .png",
         path.string(), format, kModuleName, module.problem);
   std::unique_ptr<ModuleImage> image(module.open(format, file.data(), file.size(), path.c_str()));
   const ModuleImageHeader& header = image->header();
