@@ -27,7 +27,7 @@ void differential(benchmark::State& state, demo::Finish finish) {
     });
     const double middle = cpuSeconds();
     withObjects = sumOverImage(camera, kTraced, [&](const Ray& ray, PathContext& context) {
-      const CameraSample sample{0, 0, 0, ray, worlds.whole.closestHit(ray, context)};
+      const CameraSample sample{.ray = ray, .hit = worlds.whole.closestHit(ray, context)};
       const DifferentialSample found = differentialRadiance(worlds, sample, false, context);
       return found.both + found.withObjects;
     });
