@@ -15,7 +15,7 @@
 namespace chromeball::command_doctor_test {
 namespace {
 
-TEST(CommandDoctor, TellsOfThisMachine) {
+TEST(SlowCommandDoctor, TellsOfThisMachine) {
   const CommandResult result = runExecutable({"doctor", "--json"});
   ASSERT_EQ(result.status, 0) << result.error;
   const nlohmann::json found = parseJson(result.out);
@@ -32,7 +32,7 @@ TEST(CommandDoctor, TellsOfThisMachine) {
   EXPECT_TRUE(runCommand({"doctor"}).out.ends_with("\nnothing is missing\n"));
 }
 
-TEST(CommandDoctor, SaysWhatIsMissing) {
+TEST(SlowCommandDoctor, SaysWhatIsMissing) {
   const CommandResult result = runExecutable({"doctor"}, "", SIGINT, {.memory = size_t(1) << 30});
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.out.find("address space 1.07 GB"), std::string::npos) << result.out;

@@ -90,7 +90,7 @@ size_t countOf(const FaceFiles& cube) {
              printable(fmt::format("{}", fmt::join(missing, ", "))));
 }
 
-float brightness(const Image& image, int x, int y) {
+float lightAt(const Image& image, int x, int y) {
   return maxComponent(glm::max(image.rgb(x, y), Rgb(0)));
 }
 
@@ -101,8 +101,8 @@ double seamError(const Image& strip, const std::array<int, 4>& ring) {
   double sum = 0;
   for (size_t i = 0; i < ring.size(); ++i)
     for (int y = 0; y < n; ++y) {
-      const double a = brightness(strip, ring[i] * n + n - 1, y),
-                   b = brightness(strip, ring[(i + 1) % ring.size()] * n, y);
+      const double a = lightAt(strip, ring[i] * n + n - 1, y),
+                   b = lightAt(strip, ring[(i + 1) % ring.size()] * n, y);
       if (a + b > 0 && std::isfinite(a + b)) sum += std::fabs(a - b) / (a + b);
     }
   return sum / (4 * n);
@@ -117,12 +117,14 @@ void swapFaces(Image& strip, int a, int b) {
 
 // Puts the faces of a graphics API where OpenEXR's names of the axes would have them.
 void orientAxes(const fs::path& folder, ImageFile& file) {
+  constexpr double kBetter = 0.99;  // else faces of one colour would be decided by rounding
   const double openGl = seamError(file.image, {0, kNz, 1, kPz}),
                openExr = seamError(file.image, {0, kPz, 1, kNz});
-  if (openGl < openExr) swapFaces(file.image, kPz, kNz);
+  const bool isOpenGl = openGl < kBetter * openExr;
+  if (isOpenGl) swapFaces(file.image, kPz, kNz);
   addNote(file.messages, "{}: read as a cube map, the face pz as {}", folder.string(),
-          openGl < openExr ? "its front, -Z: the edges fit as in OpenGL and Direct3D"
-                           : "+Z: the edges fit as in OpenEXR");
+          isOpenGl ? "its front, -Z: the edges fit as in OpenGL and Direct3D"
+                   : "+Z: the edges fit as in OpenEXR");
 }
 
 }  // namespace

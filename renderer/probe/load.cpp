@@ -97,8 +97,8 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
                 : detectMapping(image);
     if (!stated && !named && image.width == image.height && isCubeFace(path))
       throwInput(
-          "{}: is one face of a cube map; its folder, {}, is the probe, or give the mapping if it "
-          "is one",
+          "{}: is one face of a cube map, whose probe is the folder {}; give the mapping if the "
+          "file is a whole probe",
           path.string(), path.has_parent_path() ? path.parent_path().string() : ".");
     probe.mapping = detected.mapping;
     probe.detected = true;

@@ -44,7 +44,7 @@ std::vector<VectorUnit> vectorUnits() {
           {"AVX-512", kAvx512, __builtin_cpu_supports("avx512f") != 0}};
 }
 
-struct Findings {
+struct Examination {
   Machine machine = thisMachine();
   EmbreeVersion embree = embreeVersion();
   ModuleState images = imageioModuleState();
@@ -54,9 +54,9 @@ struct Findings {
   std::vector<std::string> missing;  // each with what it means
 };
 
-Findings examine() {
+Examination examine() {
   constexpr double kLittleMemory = 1e9;
-  Findings found;
+  Examination found;
   std::error_code error;
   found.temporaryFolder = std::filesystem::temp_directory_path(error).string();
   if (!found.images.problem.empty())
@@ -74,7 +74,7 @@ Findings examine() {
   return found;
 }
 
-JsonValue toJson(const Findings& f) {
+JsonValue toJson(const Examination& f) {
   JsonValue units = JsonValue::object();
   for (const VectorUnit& unit : f.units)
     units[unit.name] = {{"used", unit.isUsed}, {"there", unit.isThere}};
@@ -101,7 +101,7 @@ JsonValue toJson(const Findings& f) {
           {"missing", f.missing}};
 }
 
-void printLine(std::string_view subject, const std::string& text) {
+void printFinding(std::string_view subject, const std::string& text) {
   fmt::print("{:<16} {}\n", subject, printable(text));
 }
 
@@ -109,36 +109,37 @@ std::string gigabytes(double bytes) {
   return std::isfinite(bytes) ? fmt::format("{:.3g} GB", 1e-9 * bytes) : "none";
 }
 
-std::string inWords(const VectorUnit& unit) {
+std::string describeUnit(const VectorUnit& unit) {
   return fmt::format("{} {}{}", unit.name, unit.isUsed ? "used" : "not used",
                      unit.isThere == unit.isUsed ? ""
                      : unit.isThere              ? ", though the machine has it"
                                                  : ", which the machine lacks");
 }
 
-void print(const Findings& f) {
-  printLine("chromeball", CHROMEBALL_VERSION ", by " + f.machine.compiler);
-  printLine("Embree", fmt::format("{}, {} rays at once", f.embree.version, f.embree.lanes));
-  printLine("OpenEXR", exrVersion());
-  printLine("OpenImageIO", f.images.version.empty() ? "missing" : f.images.version + ", for TIFF");
-  printLine("oneTBB", tbbVersion());
-  printLine("glTF", "2.0");
-  printLine("system", f.machine.system);
-  printLine("processor", f.machine.processor);
-  printLine("threads",
-            fmt::format("{} of {}", f.machine.threads, std::thread::hardware_concurrency()));
+void print(const Examination& f) {
+  printFinding("chromeball", CHROMEBALL_VERSION ", by " + f.machine.compiler);
+  printFinding("Embree", fmt::format("{}, {} rays at once", f.embree.version, f.embree.lanes));
+  printFinding("OpenEXR", exrVersion());
+  printFinding("OpenImageIO",
+               f.images.version.empty() ? "missing" : f.images.version + ", for TIFF");
+  printFinding("oneTBB", tbbVersion());
+  printFinding("glTF", "2.0");
+  printFinding("system", f.machine.system);
+  printFinding("processor", f.machine.processor);
+  printFinding("threads",
+               fmt::format("{} of {}", f.machine.threads, std::thread::hardware_concurrency()));
   std::vector<std::string> units;
-  for (const VectorUnit& unit : f.units) units.push_back(inWords(unit));
-  printLine("vector units", fmt::format("{}", fmt::join(units, "; ")));
-  printLine("memory", fmt::format("{}; limits: address space {}, control group {}",
-                                  gigabytes(f.memory.machine), gigabytes(f.memory.addressSpace),
-                                  gigabytes(f.memory.controlGroup)));
-  printLine("for renders", gigabytes(memoryBudget()) + ", unless --memory says otherwise");
-  printLine("temporary files", f.temporaryFolder.empty() ? "nowhere" : f.temporaryFolder);
+  for (const VectorUnit& unit : f.units) units.push_back(describeUnit(unit));
+  printFinding("vector units", fmt::format("{}", fmt::join(units, "; ")));
+  printFinding("memory", fmt::format("{}; limits: address space {}, control group {}",
+                                     gigabytes(f.memory.machine), gigabytes(f.memory.addressSpace),
+                                     gigabytes(f.memory.controlGroup)));
+  printFinding("for renders", gigabytes(memoryBudget()) + ", unless --memory says otherwise");
+  printFinding("temporary files", f.temporaryFolder.empty() ? "nowhere" : f.temporaryFolder);
 }
 
 void run(const DoctorArguments& arguments) {
-  const Findings found = examine();
+  const Examination found = examine();
   if (arguments.json)
     printJson(toJson(found));
   else

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball info MODEL
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -33,12 +34,20 @@ std::string inShort(size_t count) {
 std::string megabytes(double bytes) { return fmt::format("{:.3g} MB", 1e-6 * bytes); }
 
 template <class Vector>
-std::string triple(const Vector& v, const char* separator = " ") {
+std::string joined(const Vector& v, const char* separator = " ") {
   return fmt::format("{1:.4g}{0}{2:.4g}{0}{3:.4g}", separator, v.x, v.y, v.z);
 }
 
-void printLine(std::string_view subject, const std::string& text) {
+void printSubjectLine(std::string_view subject, const std::string& text) {
   fmt::print("{:<12} {}\n", subject, printable(text));
+}
+
+// With four digits of the largest side of a box.
+vec3 rounded(const vec3& v, const Bounds& box) {
+  const double largest = std::max({box.size().x, box.size().y, box.size().z});
+  if (!(largest > 0)) return v;
+  const double step = std::pow(10, std::floor(std::log10(largest)) - 3);
+  return vec3(glm::round(glm::dvec3(v) / step) * step + 0.0);  // and no -0
 }
 
 // `describe(element)` is what follows its name.
@@ -53,15 +62,17 @@ void printList(const std::vector<Element>& list, bool all, const Describe& descr
   if (shown < list.size()) fmt::print("  and {} more; see --all\n", list.size() - shown);
 }
 
-using Row = std::pair<std::string, std::string>;
+using ModelRow = std::pair<std::string, std::string>;
 
-Row row(const ModelInfo::Node& node) {
-  return {node.name, fmt::format("{:>7} triangles, {} m around ({})", inShort(node.triangles),
-                                 triple(node.bounds.size(), " x "),
-                                 triple(0.5f * (node.bounds.min + node.bounds.max), ", "))};
+ModelRow rowOf(const ModelInfo::Node& node) {
+  return {
+      node.name,
+      fmt::format("{:>7} triangles, {} m around ({})", inShort(node.triangles),
+                  joined(rounded(vec3(node.bounds.size()), node.bounds), " x "),
+                  joined(rounded(0.5f * (node.bounds.min + node.bounds.max), node.bounds), ", "))};
 }
 
-Row row(const ModelInfo::Material& m) {
+ModelRow rowOf(const ModelInfo::Material& m) {
   std::vector<std::string> words;
   for (const std::string& name : m.extensions)
     words.push_back(name.starts_with("KHR_materials_") ? name.substr(14) : name);
@@ -73,75 +84,82 @@ Row row(const ModelInfo::Material& m) {
   return {m.name, words.empty() ? "plain" : fmt::format("{}", fmt::join(words, ", "))};
 }
 
-Row row(const ModelInfo::Texture& t) {
+ModelRow rowOf(const ModelInfo::Texture& t) {
   return {t.image, fmt::format("{} x {}, {}", t.width, t.height, megabytes(double(t.bytes)))};
 }
 
-Row row(const Camera& c) {
+ModelRow rowOf(const Camera& c) {
   const std::string lens = c.orthographic
                                ? fmt::format("orthographic, {:.4g} m high", 2 * c.halfHeight)
                                : fmt::format("{:.4g} degrees high", glm::degrees(c.fov));
-  return {c.name, fmt::format("{}, at ({})", lens, triple(c.position, ", "))};
+  return {c.name, fmt::format("{}, at ({})", lens, joined(c.position, ", "))};
 }
 
-Row row(const PunctualLight& light) {
+ModelRow rowOf(const PunctualLight& light) {
   const bool isDistant = light.kind == PunctualLight::Kind::Directional;
-  return {light.name, fmt::format("{}, {} {}", lightKind(light), triple(light.intensity),
+  return {light.name, fmt::format("{}, {} {}", lightKind(light), joined(light.intensity),
                                   isDistant ? "W/m^2" : "W/sr")};
 }
 
-Row row(const ModelInfo::Animation& a) {
+ModelRow rowOf(const ModelInfo::Animation& a) {
   return {a.name, fmt::format("{:.4g} s, {} channels", a.seconds, a.channels)};
 }
 
 template <class Element>
 void printSubject(std::string_view subject, const std::vector<Element>& list, bool all,
                   const std::string& more = "") {
-  printLine(subject, list.empty() ? "none" : fmt::format("{}{}", list.size(), more));
-  printList(list, all, [](const Element& element) { return row(element); });
+  printSubjectLine(subject, list.empty() ? "none" : fmt::format("{}{}", list.size(), more));
+  printList(list, all, [](const Element& element) { return rowOf(element); });
 }
 
 void printNodes(const ModelInfo& info, bool all) {
   std::vector<ModelInfo::Node> nodes;
   std::ranges::copy_if(info.nodes, std::back_inserter(nodes), hasTriangles);
   std::ranges::stable_sort(nodes, {}, &ModelInfo::Node::depth);
-  printLine("nodes", fmt::format("{}, {} of them with triangles, in themselves or below",
-                                 info.nodes.size(), nodes.size()));
-  printList(nodes, all, [](const ModelInfo::Node& node) { return row(node); });
+  printSubjectLine("nodes", fmt::format("{}, with triangles in or below them: {}",
+                                        info.nodes.size(), nodes.size()));
+  printList(nodes, all, [](const ModelInfo::Node& node) { return rowOf(node); });
 }
 
 void printExtensions(const ModelInfo& info) {
   std::vector<std::string> used, ignored;
   for (const auto& e : info.extensions) (e.isSupported ? used : ignored).push_back(e.name);
-  printLine("extensions", used.empty() ? "none" : fmt::format("{}", fmt::join(used, ", ")));
-  printLine("unsupported", ignored.empty() ? "none" : fmt::format("{}", fmt::join(ignored, ", ")));
+  printSubjectLine("extensions", used.empty() ? "none" : fmt::format("{}", fmt::join(used, ", ")));
+  printSubjectLine("unsupported",
+                   ignored.empty() ? "none" : fmt::format("{}", fmt::join(ignored, ", ")));
 }
 
 void print(const ModelInfo& info, const std::string& file, bool all) {
   const Scene& scene = info.scene;
   const Bounds box = bounds(scene);
-  printLine("file",
-            fmt::format("{}: {} in {} file{}", file, megabytes(double(byteCountOf(scene.files))),
-                        scene.files.size(), scene.files.size() == 1 ? "" : "s"));
-  if (!info.generator.empty()) printLine("made by", info.generator);
-  printLine("size", box.empty() ? "nothing to render"
-                                : fmt::format("{} m, from ({}) to ({})", triple(box.size(), " x "),
-                                              triple(box.min, ", "), triple(box.max, ", ")));
-  printLine("geometry",
-            fmt::format("{} triangles: {} meshes, {} instances", inShort(scene.triangleCount()),
-                        inShort(scene.meshes.size()), inShort(scene.instances.size())));
-  printLine("memory", fmt::format("geometry {}, textures {}", megabytes(geometryBytes(scene)),
-                                  megabytes(double(scene.texelByteCount()))));
+  printSubjectLine(
+      "file", fmt::format("{}: {} in {} file{}", file, megabytes(double(byteCountOf(scene.files))),
+                          scene.files.size(), scene.files.size() == 1 ? "" : "s"));
+  if (!info.generator.empty()) printSubjectLine("made by", info.generator);
+  printSubjectLine("size", box.empty() ? "nothing to render"
+                                       : fmt::format("{} m, from ({}) to ({})",
+                                                     joined(rounded(vec3(box.size()), box), " x "),
+                                                     joined(rounded(box.min, box), ", "),
+                                                     joined(rounded(box.max, box), ", ")));
+  printSubjectLine(
+      "geometry",
+      fmt::format("triangles {}, meshes {}, instances {}", inShort(scene.triangleCount()),
+                  inShort(scene.meshes.size()), inShort(scene.instances.size())));
+  printSubjectLine("memory",
+                   fmt::format("geometry {}, textures {}", megabytes(geometryBytes(scene)),
+                               megabytes(double(scene.texelByteCount()))));
   printNodes(info, all);
-  printSubject("materials", info.materials, all);
+  const auto emitting = std::ranges::count_if(info.materials, &ModelInfo::Material::emits);
+  printSubject("materials", info.materials, all,
+               emitting > 0 ? fmt::format(", of which {} emit", emitting) : "");
   printSubject("textures", info.textures, all);
   printSubject("cameras", scene.cameras, all);
   printSubject("lamps", scene.lights, all);
   printSubject("animations", info.animations, all);
-  printLine("variants", info.variants.empty() ? "none" : firstNames(info.variants));
-  printLine("own probe", scene.environment ? "yes" : "none");
+  printSubjectLine("variants", info.variants.empty() ? "none" : firstNames(info.variants));
+  printSubjectLine("own probe", scene.environment ? "yes" : "none");
   printExtensions(info);
-  for (const std::string& warning : info.warnings) printLine("warning", warning);
+  for (const std::string& warning : info.warnings) printSubjectLine("warning", warning);
 }
 
 void run(const InfoArguments& a) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "scene/gltf/animation.h"
+#include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_file.h"
 #include "scene/gltf/gltf_json.h"
 #include "scene/gltf/material_reader.h"
@@ -117,9 +118,10 @@ ModelInfo modelInfo(const std::string& path, ExternalFiles external) {
   for (size_t i = 0; i < file.model.materials.size(); ++i)
     info.materials.push_back(infoOf(file.model.materials[i], i));
   for (const auto& [key, grid] : cache.texels.grids) {
-    const std::string image = file.describeImage(key.second);
+    const std::string& uri = file.images[size_t(key.second)].uri;
     info.textures.push_back(
-        {image.substr(path.size() + 2), grid->width, grid->height, grid->byteCount()});
+        {uri.empty() || isDataUri(uri) ? fmt::format("images[{}]", key.second) : decodePercent(uri),
+         grid->width, grid->height, grid->byteCount()});
   }
   for (size_t i = 0; i < file.model.animations.size(); ++i)
     info.animations.push_back(infoOf(file, i));
