@@ -2,21 +2,14 @@
 #include "base/memory.h"
 
 #include <sys/mman.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <cstdint>
+
+#include "base/memory_limits.h"
 
 namespace chromeball {
 
-double memoryBudget() {
-  double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    memory = std::min(memory, double(limit.rlim_cur));
-  return 0.8 * memory;
-}
+double memoryBudget() { return 0.8 * memoryLimits().least(); }
 
 void useLargePages(void* data, size_t bytes) {
   constexpr uintptr_t kLargePage = 2 << 20;

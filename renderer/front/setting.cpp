@@ -26,6 +26,7 @@ constexpr SettingTypeInfo kTypeInfos[] = {
     {"name, or an array", "", 5},
     {"string", "a string", 4},
     {"file", "a file name", 4},
+    {"file or folder", "a name of a file or folder", 4},
     {"file, or an array", "a file name", 5},
     {"`[width, height]`", "[width, height]", 6},
     {"", "", std::variant_npos},
@@ -186,6 +187,7 @@ void checkSetting(const Setting& setting, const SettingValue& value, const std::
       return;
     case Type::Name:
     case Type::File:
+    case Type::Source:
       if (std::get<std::string>(value).empty()) throwInput("{}: is empty", location);
       return;
     default:

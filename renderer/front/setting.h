@@ -28,6 +28,7 @@ enum class SettingType {
   Choices,   // one or several of the choices
   Name,      // a string, validated by the code that uses it
   File,      // an existing file
+  Source,    // an existing file or folder
   Files,     // one or several files to write
   Size,      // width and height in pixels
   Compound,  // a structured key with its own reader; `form` describes it

@@ -111,9 +111,11 @@ std::vector<Setting> probeRows() {
       {.key = "file",
        .option = "probe",
        .argument = "FILE",
-       .type = File,
+       .type = Source,
        .absent = "the model's own light",
-       .help = "Light probe: an HDR image of all directions (.hdr, .exr, .pfm, ...)."},
+       .help = "Light probe: an HDR image of all directions (.hdr, .exr, .pfm, ...), or a folder "
+               "with the six faces of a cube map (px.hdr, nx.hdr, ... or right, left, top, bottom, "
+               "front, back)."},
       {.key = "mapping",
        .option = "probe-mapping",
        .type = Choice,

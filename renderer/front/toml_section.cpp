@@ -110,6 +110,11 @@ SettingValue Entry::value() const {
       return text();
     case SettingType::File:
       return existingFile(*this);
+    case SettingType::Source: {
+      std::error_code ignored;
+      const std::string path = resolvedPath(*this);
+      return std::filesystem::is_directory(path, ignored) ? path : existingFile(*this);
+    }
     case SettingType::Files: {
       std::vector<std::string> paths;
       forEach(*this, [&](const Entry& e) { paths.push_back(resolvedPath(e)); });

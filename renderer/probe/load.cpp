@@ -12,6 +12,7 @@
 #include "image/io/read_image.h"
 #include "image/size_limits.h"
 #include "probe/convert.h"
+#include "probe/cube_faces.h"
 
 namespace chromeball {
 namespace {
@@ -95,6 +96,11 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
         stated  ? DetectedMapping{*stated, "its `envmap` attribute defines it", true}
         : named ? DetectedMapping{*named, "the file names it", true}
                 : detectMapping(image);
+    if (!stated && !named && image.width == image.height && isCubeFace(path))
+      throwInput(
+          "{}: is one face of a cube map, whose probe is the folder {}; give the mapping if the "
+          "file is a whole probe",
+          path.string(), path.has_parent_path() ? path.parent_path().string() : ".");
     probe.mapping = detected.mapping;
     probe.detected = true;
     probe.certain = detected.certain;
@@ -143,14 +149,32 @@ bool isBlackOutside(const Image& image, Mapping mapping) {
   return 10 * black >= 9 * outside.size();
 }
 
+// All of a cube map's faces in one folder.
+LoadedProbe loadFaces(const std::filesystem::path& folder, std::string_view mapping,
+                      std::string_view mappingLocation) {
+  if (mapping != "auto" && mapping != "cube-strip")
+    throwInput("{}: {} is a folder with the faces of a cube map, and not {}", mappingLocation,
+               folder.string(), mapping);
+  const CubeFaces faces = findCubeFaces(folder);
+  LoadedProbe probe = probeOf(readCubeFaces(folder, faces), folder, "auto", mappingLocation);
+  probe.reason = "its folder has the six faces";
+  for (const auto& face : faces.files) probe.files.push_back(face.string());
+  return probe;
+}
+
 }  // namespace
 
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping,
                       std::string_view mappingLocation) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return loadFaces(path, mapping, mappingLocation);
   ImageFile file = readImageFile(path);
   const int width = file.image.width, height = file.image.height;
   try {
-    return probeOf(std::move(file), path, mapping, mappingLocation);
+    LoadedProbe probe = probeOf(std::move(file), path, mapping, mappingLocation);
+    probe.files = {path.string()};
+    return probe;
   } catch (const std::bad_alloc&) {
     // The map as read, and as converted or turned.
     const double bytes = 2 * sizeof(Rgb) * double(width) * height;

@@ -25,11 +25,12 @@ struct LoadedProbe {
   std::string reason;                  // for the detected mapping: "its shape is 2:1"
   bool turned = false;  // by 180 degrees: a lat-long map whose `envmap` attribute is set
   RepairReport repair;
-  bool hasIntegerTexels = false;  // of 8 or 16 bits
-  float maximum = 0;              // over texels and channels
-  double fractionAtMaximum = 0;   // of the texels; 0 if all are equal
-  bool hasSuns = false;           // only known if they, or the rest, are the light
-  Messages messages;              // of its reader, each "FILE: ..."
+  bool hasIntegerTexels = false;   // of 8 or 16 bits
+  float maximum = 0;               // over texels and channels
+  double fractionAtMaximum = 0;    // of the texels; 0 if all are equal
+  bool hasSuns = false;            // only known if they, or the rest, are the light
+  Messages messages;               // of its reader, each "FILE: ..."
+  std::vector<std::string> files;  // paths of those read
 };
 
 // `mapping` is a name as on the command line. "auto" takes the mapping from the `envmap` or
@@ -37,7 +38,9 @@ struct LoadedProbe {
 // (detectMapping()). A lat-long map with `envmap` has +Z in its centre and +X at its left quarter
 // (OpenEXR's ImfEnvmap.h); it is turned by 180 degrees, to agree with the cube map of the same
 // environment. A lat-long file of any shape keeps its texels; others are converted at latLongSize()
-// (convert.h). Throws InputError; it starts with `mappingLocation` if the mapping is at fault.
+// (convert.h). `path` may be a folder with the six faces of a cube map (cube_faces.h); one face
+// alone is refused unless a mapping is given. Throws InputError; it starts with `mappingLocation`
+// if the mapping is at fault.
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping = "auto",
                       std::string_view mappingLocation = "mapping");
 

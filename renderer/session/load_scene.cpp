@@ -74,17 +74,12 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
   }
 }
 
-// Replaces a name in the list of files that were read.
-void replaceFile(const std::optional<std::string>& earlier, const std::optional<std::string>& file,
-                 std::vector<std::string>& files) {
-  const auto at = earlier ? std::ranges::find(files, *earlier) : files.end();
-  if (at == files.end()) {
-    if (file) files.push_back(*file);
-  } else if (file) {
-    *at = *file;
-  } else {
-    files.erase(at);
-  }
+// Replaces the probe's names in the list of files that were read.
+void replaceFiles(const std::vector<std::string>& earlier, const std::vector<std::string>& probe,
+                  std::vector<std::string>& files) {
+  const auto known = earlier.empty() ? std::ranges::subrange(files.end(), files.end())
+                                     : std::ranges::search(files, earlier);
+  files.insert(files.erase(known.begin(), known.end()), probe.begin(), probe.end());
 }
 
 // The probe, if it has turned or is another one. An exception leaves everything unchanged.
@@ -98,7 +93,7 @@ void replaceProbe(const RenderDescription& description, LoadedScene& loaded, Fra
     LoadedProbe read = loadProbeOf(description, loaded.scene);
     Probe replaced = probeOf(description, read);
     loaded.sources = sourcesOf(description, read, replaced);
-    replaceFile(earlier.file, probe.file, loaded.files);
+    replaceFiles(loaded.loadedProbe.files, read.files, loaded.files);
     loaded.loadedProbe = std::move(read);
     loaded.probe = std::move(replaced);
     change.probe = true;
@@ -148,7 +143,7 @@ LoadedScene loadScene(const RenderDescription& given, ModelCache* shared,
   std::vector<std::string> files = scene.files;
   const auto& lists = description.lightLists;
   files.insert(files.end(), lists.begin(), lists.end());
-  if (description.probe.file) files.push_back(*description.probe.file);
+  const auto beforeProbe = ptrdiff_t(files.size());
   if (description.camera.file) files.push_back(*description.camera.file);
   if (description.composite && description.composite->plateFile)
     files.push_back(*description.composite->plateFile);
@@ -159,6 +154,7 @@ LoadedScene loadScene(const RenderDescription& given, ModelCache* shared,
       !scene.environment)
     throwInput("{}: [surroundings] needs a probe", description.origins.of("surroundings"));
   LoadedProbe loaded = loadProbeOf(description, scene);
+  files.insert(files.begin() + beforeProbe, loaded.files.begin(), loaded.files.end());
   Probe probe = probeOf(description, loaded);
   std::optional<ProbeSources> sources = sourcesOf(description, loaded, probe);
   LoadedScene result{{},

@@ -81,6 +81,11 @@ double imageBytes(const RenderDescription& description) {
   return imageBytes(s) + snapshots + composite * s.width * s.height;
 }
 
+double geometryBytes(const Scene& scene) {
+  return double(scene.byteCount() - scene.texelByteCount()) +
+         kBuiltTriangle * triangleCountOfMeshes(scene);
+}
+
 double memoryLimit(const RenderDescription& description) {
   return description.run.memory.value_or(memoryBudget());
 }
@@ -102,7 +107,7 @@ MemoryEstimate estimateMemory(const LoadedScene& loaded) {
   if (const auto& file = scene.texelFile)
     e.textures += double(std::min(file->byteCount(), file->cacheBytes()));
   const bool keepsFiles = description.run.isOfFrames && scene.isAnimated;
-  e.geometry = meshes + kBuiltTriangle * triangles + (keepsFiles ? bytesOfFiles(scene) : 0);
+  e.geometry = geometryBytes(scene) + (keepsFiles ? bytesOfFiles(scene) : 0);
   e.probe = map + kTableTexel * mapTexels;
 
   const double always = e.process + e.textures + meshes;

@@ -40,6 +40,9 @@ void checkMemory(const RenderDescription& description, double bytes,
 // The film, layers, output images and snapshots of a description of known size.
 double imageBytes(const RenderDescription& description);
 
+// Meshes and Embree's structure over them.
+double geometryBytes(const Scene& scene);
+
 // "images 1.2 GB, textures 0.1 GB, ..."
 std::string inWords(const MemoryEstimate& estimate);
 

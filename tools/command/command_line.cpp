@@ -142,8 +142,8 @@ int run(int argc, char** argv) {
       command.addCommand("image", "View and compare images.").requiresCommand(),
       {addImageDenoiseCommand, addImageDevelopCommand, addImageDivideCommand, addImageErrorCommand,
        addImageFlatFieldCommand, addImageRelightCommand, addImageViewCommand});
-  addCommands(command,
-              {addCameraCommand, addLightsCommand, addLightsErrorCommand, addReferenceCommand});
+  addCommands(command, {addCameraCommand, addLightsCommand, addLightsErrorCommand, addInfoCommand,
+                        addDoctorCommand, addReferenceCommand});
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -17,6 +17,8 @@ void addCameraCommand(Command app);
 void addLightsCommand(Command app);
 void addLightsErrorCommand(Command app);
 void addReferenceCommand(Command app);
+void addInfoCommand(Command app);
+void addDoctorCommand(Command app);
 
 // Of `chromeball probe`.
 void addProbeInfoCommand(Command probe);

@@ -2,6 +2,8 @@
 // Values of the library as JSON, for --json.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 

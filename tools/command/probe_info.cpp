@@ -151,7 +151,8 @@ void run(const ProbeInfoArguments& arguments) {
 void addProbeInfoCommand(Command probe) {
   auto [command, a] = probe.addCommand<ProbeInfoArguments>(
       "info", "Show the mapping and the statistics of a probe.", run);
-  command.addRequired("FILE", a.file, "the probe's image");
+  command.addRequired("FILE", a.file,
+                     "the probe's image, or a folder with the six faces of a cube map");
   command.addOption("--mapping", a.mapping,
                     "auto, lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2");
   addRotationOption(command, a.rotation, ", and with it the directions");

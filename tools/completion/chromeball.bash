@@ -9,7 +9,7 @@ _chromeball() {
   esac
   case $command in
     '')
-      words='render merge compare bake basis relight probe image camera lights lights-error'
+      words='render merge compare bake basis relight probe image camera lights lights-error info doctor'
       options='--help --version' ;;
     'render')
       options='--help --animation --animation-time --variant --camera --camera-file --shutter --shutter-steps --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --integrator --ao --reflection-occlusion --ao-distance --bent --irradiance-cache --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --orbit-step --allow-external --output --aov --develop --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --probe-sequence --write-every --preview --display --cache --checkpoint --checkpoint-every --resume --progress --quiet' ;;
@@ -88,6 +88,10 @@ _chromeball() {
       options='--help --method --suggest --polygons --count --output --format --angle --light-units --preview --regions --sphere --normals --recursion --max-error --ambient --seed --rotation --probe-mask --mapping' ;;
     'lights-error')
       options='--help --methods --counts --recursion --normals --csv --plot --seed --probe-mask --mapping' ;;
+    'info')
+      options='--help --json --all --allow-external' ;;
+    'doctor')
+      options='--help --json' ;;
   esac
   case "$command $previous" in
   esac

@@ -38,6 +38,7 @@ class Command:
     about: str
     sections: list = field(default_factory=list)  # (title, [Entry])
     children: list = field(default_factory=list)
+    footer: str = ''
 
     def options(self):
         return [e for _, entries in self.sections for e in entries if e.names[0].startswith('-')]
@@ -62,6 +63,8 @@ def read_help(words):
         elif entry:
             command.sections[-1][1].append(parse_entry(entry[1]))
             command.sections[-1][1][-1].description = entry[2] or ''
+        elif line[:1].strip():
+            command.footer = f'{command.footer} {line.strip()}'.strip()
         elif line.strip():  # a description goes on
             last = command.sections[-1][1][-1]
             last.description = f'{last.description} {line.strip()}'.strip()
@@ -159,6 +162,7 @@ def man_page(program, version):
             if entries and title not in ('Positionals', 'Options'):
                 text += f'.PP\n\\fI{man(title)}\\fR\n'
             text += ''.join(man_entry(e) for e in entries)
+        text += f'.PP\n{man(command.footer)}\n' if command.footer else ''
     return text + MAN_TAIL
 
 

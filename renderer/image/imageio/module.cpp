@@ -162,6 +162,11 @@ extern "C" [[gnu::visibility("default")]] const char* chromeballImageioVersion()
   return CHROMEBALL_VERSION;
 }
 
+extern "C" [[gnu::visibility("default")]] const char* chromeballImageioLibrary() {
+  static const std::string version = OIIO::get_string_attribute("version");
+  return version.c_str();
+}
+
 extern "C" [[gnu::visibility("default")]] chromeball::ModuleImage* chromeballImageioOpen(
     const char* format, const uint8_t* file, size_t bytes, const char* name) {
   return new chromeball::OpenedImage(format, {file, bytes}, name);

@@ -32,6 +32,7 @@ fs::path ownFolder() {
 
 struct ImageioModule {
   ModuleOpen* open = nullptr;
+  ModuleVersion* library = nullptr;
   std::string problem;  // why there is none
 };
 
@@ -51,17 +52,24 @@ ImageioModule loadImageioModule() {
     }
     const auto version = reinterpret_cast<ModuleVersion*>(dlsym(library, kModuleVersion));
     const auto open = reinterpret_cast<ModuleOpen*>(dlsym(library, kModuleOpen));
-    if (version && open && std::string_view(version()) == CHROMEBALL_VERSION) return {open, ""};
-    return {nullptr, path.string() + " is of another version"};
+    const auto of = reinterpret_cast<ModuleVersion*>(dlsym(library, kModuleLibrary));
+    if (version && open && of && std::string_view(version()) == CHROMEBALL_VERSION)
+      return {open, of, ""};
+    return {.problem = path.string() + " is of another version"};
   }
-  return {nullptr, problem};
+  return {.problem = problem};
+}
+
+const ImageioModule& imageioModule() {
+  static const ImageioModule module = loadImageioModule();
+  return module;
 }
 
 }  // namespace
 
 std::unique_ptr<ModuleImage> openModuleImage(const char* format, std::span<const uint8_t> file,
                                              const fs::path& path) {
-  static const ImageioModule module = loadImageioModule();
+  const ImageioModule& module = imageioModule();
   if (!module.open)
     throwInput(
         "{}: is a {} file, which needs the module {} beside the command or the library, as the "
@@ -73,6 +81,11 @@ std::unique_ptr<ModuleImage> openModuleImage(const char* format, std::span<const
   // For TIFF see pictureDirectory().
   checkFileLength(path, header.width, header.height, header.bytes, file.size(), kMaxUnknownRatio);
   return image;
+}
+
+ModuleState imageioModuleState() {
+  const ImageioModule& module = imageioModule();
+  return {module.library ? module.library() : "", module.problem};
 }
 
 }  // namespace chromeball

@@ -39,10 +39,18 @@ using ModuleOpen = ModuleImage*(const char* format, const uint8_t* file, size_t 
                                 const char* name);
 inline constexpr const char* kModuleVersion = "chromeballImageioVersion";
 inline constexpr const char* kModuleOpen = "chromeballImageioOpen";
+inline constexpr const char* kModuleLibrary = "chromeballImageioLibrary";  // OpenImageIO's version
 
 // Loads the module if it is not yet loaded. Throws InputError if there is no module beside the
 // library or the command, or if the image exceeds the limits (size_limits.h).
 std::unique_ptr<ModuleImage> openModuleImage(const char* format, std::span<const uint8_t> file,
                                              const std::filesystem::path& path);
+
+// Whether the module can be loaded, which this does.
+struct ModuleState {
+  std::string version;  // of OpenImageIO
+  std::string problem;  // why there is none; empty: there is one
+};
+ModuleState imageioModuleState();
 
 }  // namespace chromeball

@@ -17,10 +17,6 @@ namespace {
 
 using tinygltf::Animation;
 
-std::string animationName(const std::vector<Animation>& animations, size_t i) {
-  return animations[i].name.empty() ? fmt::format("{}", i) : animations[i].name;
-}
-
 // Finds an animation by its name, or by its index if it has no name; the first if `when` has none.
 size_t findAnimation(const GltfFile& file, const AnimationTime& when) {
   const auto& animations = file.model.animations;
@@ -178,6 +174,10 @@ void checkWeights(const GltfFile& file, const tinygltf::Node& node, const Track&
 }
 
 }  // namespace
+
+std::string animationName(const std::vector<tinygltf::Animation>& animations, size_t i) {
+  return animations[i].name.empty() ? fmt::format("{}", i) : animations[i].name;
+}
 
 std::string animationNames(const GltfFile& file) {
   std::vector<std::string> names;

@@ -20,6 +20,9 @@ void applyAnimation(GltfFile& file, const AnimationTime& when);
 // As animationChanges() (load_gltf.h), of an open file whose animation applyAnimation() accepts.
 std::vector<double> changesAfter(GltfFile& file, const AnimationTime& when, double seconds);
 
+// The name of an animation, or its index if it has none.
+std::string animationName(const std::vector<tinygltf::Animation>& animations, size_t index);
+
 // The names of the file's animations, for messages: "`Walk`, `Run` and 3 more".
 std::string animationNames(const GltfFile& file);
 

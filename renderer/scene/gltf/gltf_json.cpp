@@ -18,12 +18,6 @@ namespace {
 
 using nlohmann::json;
 
-bool isSupported(std::string_view extension) {
-  return extension == "KHR_mesh_quantization" ||
-         ((extension.starts_with("EXT_") || extension.starts_with("KHR_")) &&
-          findObjectType(extension));
-}
-
 // How the user can avoid an unsupported extension.
 const char* adviceFor(const std::string& extension) {
   if (extension == "KHR_texture_basisu")
@@ -47,6 +41,12 @@ bool exceedsInt(const json& value) {
 
 }  // namespace
 
+bool isSupportedExtension(std::string_view extension) {
+  return extension == "KHR_mesh_quantization" ||
+         ((extension.starts_with("EXT_") || extension.starts_with("KHR_")) &&
+          findObjectType(extension));
+}
+
 void checkVersion(const json& root) {
   const auto asset = root.find("asset");
   const std::string version = asset == root.end() ? "" : stringMember(*asset, "version");
@@ -62,11 +62,11 @@ void checkVersion(const json& root) {
 
 std::set<std::string> checkExtensions(const json& root) {
   for (const std::string& name : namesIn(root, "extensionsRequired"))
-    if (!isSupported(name))
+    if (!isSupportedExtension(name))
       throw std::runtime_error(fmt::format("requires the extension {}, which is not supported; {}",
                                            printableName(name), adviceFor(name)));
   std::set<std::string> ignored = namesIn(root, "extensionsUsed");
-  std::erase_if(ignored, isSupported);
+  std::erase_if(ignored, isSupportedExtension);
   return ignored;
 }
 

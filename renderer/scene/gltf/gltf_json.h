@@ -17,6 +17,8 @@ namespace chromeball {
 // Throws unless the file is glTF 2.0.
 void checkVersion(const nlohmann::json& root);
 
+bool isSupportedExtension(std::string_view name);
+
 // Throws for an extension that the file requires and that is not supported, with advice. Returns
 // the extensions that it uses but that are ignored.
 std::set<std::string> checkExtensions(const nlohmann::json& root);

@@ -14,6 +14,7 @@
 #include "scene/gltf/gltf_file.h"
 #include "scene/gltf/gltf_json.h"
 #include "scene/gltf/lights.h"
+#include "scene/gltf/material_reader.h"
 #include "scene/gltf/model_cache.h"
 #include "scene/gltf/node_tree.h"
 #include "scene/motion.h"
@@ -86,18 +87,6 @@ void addMissingNodes(tinygltf::Model& model) {
 
 using tinygltf::Value;
 
-constexpr const char* kVariants = "KHR_materials_variants";
-
-std::vector<std::string> variantNames(const GltfFile& file) {
-  std::vector<std::string> names;
-  const Value* extension = findExtension(file.model.extensions, kVariants);
-  if (!extension) return names;
-  const Value& list = memberOf(*extension, "variants");
-  for (size_t i = 0; i < list.ArrayLen(); ++i)
-    names.push_back(textMember(elementOf(list, i), "name"));
-  return names;
-}
-
 // Warns if the element to which a mapping refers does not exist.
 bool isThere(GltfFile& file, const char* array, int index, size_t count) {
   if (index >= 0 && size_t(index) < count) return true;
@@ -136,7 +125,7 @@ void applyVariant(GltfFile& file, const VariantChoice& choice) {
   bool isUsed = false;
   for (tinygltf::Mesh& mesh : file.model.meshes)
     for (tinygltf::Primitive& primitive : mesh.primitives) {
-      const Value* extension = findExtension(primitive.extensions, kVariants);
+      const Value* extension = findExtension(primitive.extensions, kVariantsExtension);
       if (!extension) continue;
       const Value& mappings = memberOf(*extension, "mappings");
       for (size_t i = 0; i < mappings.ArrayLen(); ++i)

@@ -223,4 +223,14 @@ void MaterialReader::moveInto(Scene& scene) {
   scene.grids = std::move(grids_);
 }
 
+std::vector<std::string> variantNames(const GltfFile& file) {
+  std::vector<std::string> names;
+  const Value* extension = findExtension(file.model.extensions, kVariantsExtension);
+  if (!extension) return names;
+  const Value& list = memberOf(*extension, "variants");
+  for (size_t i = 0; i < list.ArrayLen(); ++i)
+    names.push_back(textMember(elementOf(list, i), "name"));
+  return names;
+}
+
 }  // namespace chromeball

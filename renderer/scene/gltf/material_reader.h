@@ -76,4 +76,8 @@ class MaterialReader {
   std::vector<int> imageOf_;  // grid to image
 };
 
+// The names of the file's sets of materials, in its order.
+inline constexpr const char* kVariantsExtension = "KHR_materials_variants";
+std::vector<std::string> variantNames(const GltfFile& file);
+
 }  // namespace chromeball
