@@ -28,6 +28,7 @@
 #include "scene_options.h"
 #include "session/develop_image.h"
 #include "session/image_header.h"
+#include "session/meter_exposure.h"
 #include "session/render_loaded.h"
 #include "session/render_report.h"
 #include "viewers/viewers.h"
@@ -60,14 +61,14 @@ class PassReport {
 class ImageRender {
  public:
   // All references must outlive this. Throws InputError for a checkpoint that does not fit.
-  ImageRender(const LoadedScene& loaded, bool showsProgress, std::vector<Viewer*> viewers)
+  ImageRender(const LoadedScene& loaded, ProgressStyle style, std::vector<Viewer*> viewers)
       : loaded_(loaded),
         viewers_(std::move(viewers)),
-        bar_(showsProgress),
+        bar_(style),
         control_(
             loaded,
-            [this, showsProgress](const RenderState& state) {
-              if (showsProgress) bar_.describe(report_.of(state.result));
+            [this, style](const RenderState& state) {
+              if (style != ProgressStyle::None) bar_.describe(report_.of(state.result));
             },
             viewers_) {}
 
@@ -155,6 +156,12 @@ void addState(const LoadedScene& loaded, std::optional<RenderPart>& part, Finish
   result.image.state = partState(*part, result.render);
 }
 
+float chosenExposure(const LoadedScene& loaded, const PreparedScene& prepared, bool quiet) {
+  const float stops = meteredExposure(loaded, prepared, interrupted);
+  if (!quiet && !interrupted) fmt::print("{}\n", chosenInWords(stops));
+  return stops;
+}
+
 void renderStill(const SceneFile& scene, const SceneOptions& options) {
   RenderDescription description = planRender(scene, options.settings);
   const Messages outputMessages = checkOutputs(description);
@@ -163,20 +170,24 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
 
   Stopwatch watch;
   PhaseSeconds seconds;
-  const LoadedScene loaded = loadScene(description);
-  description = loaded.description;
+  LoadedScene loaded = loadScene(description);
   seconds.load = watch.lap();
   const PreparedScene prepared = prepareScene(loaded);
   seconds.build = prepared.buildSeconds;
   seconds.prepare = prepared.prepareSeconds;
-  prepareOutputs(description, loaded.files);
+  prepareOutputs(loaded.description, loaded.files);
+  catchInterrupts();
+  watch.lap();
+  if (needsExposure(loaded.description))
+    loaded.description.output.expose(chosenExposure(loaded, prepared, options.quiet()));
+  seconds.prepare += watch.lap();
+  description = loaded.description;
   std::optional<RenderPart> part = identified(loaded);
   FinishedRender result = [&] {
-    ImageRender render(loaded, options.showsProgress(), viewers.all());
+    ImageRender render(loaded, options.progress(), viewers.all());
     print(viewers.messages(), options.quiet());  // after the last error that input can cause
     print(outputMessages, options.quiet());
     print(loaded.messages, options.quiet());
-    catchInterrupts();
     return render.run(
         prepared, [](double fraction) { return fraction; }, interrupted);
   }();
@@ -251,6 +262,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
   catchInterrupts();
   FrameScene scene;
   std::set<std::string> printed;
+  std::optional<float> exposure;  // of all frames
   size_t kept = 0;
   for (size_t i = 0; i < frames.size() && !interrupted; ++i) {
     const SequenceFrame frame = sequence.frame(frames[i]);
@@ -261,6 +273,14 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
       continue;
     }
     Stopwatch watch;
+    if (needsExposure(description)) {
+      if (!exposure) {
+        const SequenceFrame first = sequence.frame(sequence.first());
+        scene.show(planRender(first.scene, first.given));
+        exposure = chosenExposure(scene.loaded(), scene.prepared(), options.quiet());
+      }
+      description.output.expose(*exposure);
+    }
     scene.show(description);
     description = scene.loaded().description;
     const PhaseSeconds seconds{.load = watch.lap()};
@@ -268,7 +288,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     std::optional<RenderPart> part = identified(scene.loaded());
     const double before = double(i - kept), count = double(frames.size() - kept);
     FinishedRender result = [&] {
-      ImageRender render(scene.loaded(), options.showsProgress(), viewers.all());
+      ImageRender render(scene.loaded(), options.progress(), viewers.all());
       printNew(viewers.messages(), printed, options.quiet());
       printNew(sequence.messages(), printed, options.quiet());
       printNew(outputMessages, printed, options.quiet());
