@@ -73,7 +73,7 @@ TEST(WhiteBalance, MakesTheLightWhite) {
 // the linear Rec. 709 colour below; 6504 K is our white.
 TEST(WhiteBalance, OfATemperature) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(balanceOf(6504.)[c], 1, 1e-5);
-  const Rgb a(1.8231f, 0.8719f, 0.1530f), shown = a * balanceOf(2856.);
+  const Rgb a(1.8451f, 0.8261f, 0.2333f), shown = a * balanceOf(2856.);
   EXPECT_NEAR(shown.x / shown.y, 1, 0.06);
   EXPECT_NEAR(shown.z / shown.y, 1, 0.06);
 }
@@ -113,12 +113,12 @@ TEST_F(Exposure, IsPrintedStoredAndRepeatable) {
   EXPECT_EQ(float(*metadataNumber(readExrMetadata(folder_ / "a.exr"), "exposure")),
             std::stof(stops));
   EXPECT_EQ(stopsIn(render({"-o", folder_ / "b.png", "--exposure", stops}).out), "");
-  EXPECT_EQ(bytes("a.png"), bytes("b.png"));
+  EXPECT_TRUE(bytes("a.png") == bytes("b.png"));
   EXPECT_NE(bytes("a.png").find("exposure"), std::string::npos) << "tEXt";
   render({"-o", folder_ / "c.png", "--exposure", "auto", "--threads", "1", "--quiet"});
-  EXPECT_EQ(bytes("a.png"), bytes("c.png"));
+  EXPECT_TRUE(bytes("a.png") == bytes("c.png"));
   EXPECT_EQ(stopsIn(run({"image", "view", folder_ / "a.exr", folder_ / "v.png"}).out), stops);
-  EXPECT_EQ(bytes("a.png"), bytes("v.png"));
+  EXPECT_TRUE(bytes("a.png") == bytes("v.png"));
 }
 
 TEST_F(Exposure, ZeroIsRadiance) {
@@ -136,18 +136,18 @@ TEST_F(Exposure, IsNotMeasuredForRadiance) {
 
 // All parts of a render find the same, and their whole has it.
 TEST_F(Exposure, OfPartsIsThatOfTheWhole) {
-  const std::string whole = stopsIn(render({"-o", folder_ / "a.png"}).out);
+  const std::string whole = stopsIn(render({"--guide", "off", "-o", folder_ / "a.png"}).out);
   for (const char* x : {"0", "24"})
-    EXPECT_EQ(stopsIn(render({"--crop", std::string(x) + ",0,24,32", "-o",
+    EXPECT_EQ(stopsIn(render({"--guide", "off", "--crop", std::string(x) + ",0,24,32", "-o",
                               folder_ / (x + std::string(".exr"))})
                           .out),
               whole);
   run({"merge", folder_ / "0.exr", folder_ / "24.exr", "-o", folder_ / "m.png"});
-  EXPECT_EQ(bytes("m.png"), bytes("a.png"));
+  EXPECT_TRUE(bytes("m.png") == bytes("a.png"));
   run({"merge", folder_ / "0.exr", folder_ / "24.exr", "-o", folder_ / "z.png", "--exposure", "0",
        "--tonemap", "aces"});
-  render({"-o", folder_ / "b.png", "--exposure", "0", "--tonemap", "aces"});
-  EXPECT_EQ(bytes("z.png"), bytes("b.png"));
+  render({"--guide", "off", "-o", folder_ / "b.png", "--exposure", "0", "--tonemap", "aces"});
+  EXPECT_TRUE(bytes("z.png") == bytes("b.png"));
 }
 
 TEST_F(Exposure, OfASequenceIsThatOfItsFirstFrame) {
@@ -170,15 +170,15 @@ TEST_F(Exposure, OfASequenceIsThatOfItsFirstFrame) {
   run({"render", folder_ / "m.gltf", "--probe", folder_ / "p.1.pfm", "--size", "48x32", "--samples",
        "8", "-o", folder_ / "second.png", "--exposure", stopsIn(all.out)});
   const std::string second = bytes("second.png");
-  EXPECT_EQ(bytes("f.1.png"), second) << "as bright as by the first frame's probe";
+  EXPECT_TRUE(bytes("f.1.png") == second) << "as bright as by the first frame's probe";
   std::filesystem::remove(folder_ / "f.1.png");
   EXPECT_EQ(stopsIn(run(frames).out), stopsIn(all.out)) << "frame 0 exists";
-  EXPECT_EQ(bytes("f.1.png"), second);
+  EXPECT_TRUE(bytes("f.1.png") == second);
   std::filesystem::remove(folder_ / "f.1.png");
   Words one = frames;
   one.insert(one.end(), {"--frame", "1"});
   run(one);
-  EXPECT_EQ(bytes("f.1.png"), second);
+  EXPECT_TRUE(bytes("f.1.png") == second);
 }
 
 TEST_F(Exposure, IsAKeyOfTheSceneFile) {
@@ -218,7 +218,7 @@ TEST_F(Exposure, OfAFileIsBySurfacesIfItTells) {
   EXPECT_EQ(stopsIn(run({"image", "develop", folder_ / "sky.exr", folder_ / "d.exr"}).out), "");
   EXPECT_EQ(stopsIn(run({"image", "view", folder_ / "v.png", folder_ / "w.png"}).out), "")
       << "integers are as they were shown";
-  EXPECT_EQ(bytes("v.png"), bytes("w.png"));
+  EXPECT_TRUE(bytes("v.png") == bytes("w.png"));
 }
 
 TEST_F(Exposure, RefusesTemperaturesOfNoLight) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "progress_bar.h"
+#include "base/line_times.h"
 #include "session/time_kept.h"
 
 namespace chromeball::progress_test {
@@ -23,7 +23,7 @@ TEST(ProgressLines, EveryTenthOrMinute) {
   EXPECT_EQ(linesOf(10), std::vector<int>{}) << "short work is silent";
   EXPECT_EQ(linesOf(40), (std::vector<int>{10, 20, 30})) << "not more often";
   EXPECT_EQ(linesOf(400), (std::vector<int>{40, 80, 120, 160, 200, 240, 280, 320, 360}));
-  EXPECT_EQ(linesOf(4000).size(), 66u) << "a minute is less than a tenth";
+  EXPECT_EQ(linesOf(4000).size(), 69u) << "six minutes and a tenth, ten times";
   EXPECT_EQ(linesOf(200, false), (std::vector<int>{60, 120, 180}));
 }
 

@@ -226,7 +226,7 @@ std::vector<Setting> outputRows() {
        .help = "Tone operator of a .png.",
        .effect = Effect::Display},
       {.key = "white_balance",
-       .argument = "KELVIN|R,G,B",
+       .argument = "KELVIN",
        .type = Numbers,
        .form = "a number, or three",
        .counts = {1, 3},

@@ -42,7 +42,7 @@ float autoExposure(const Image& radiance, const Image& coverage) {
   const double toMean = std::log2(kMean) - sum / double(count - 2 * outliers);
   const size_t bright = size_t(double(count - 1) * (1 - kClipped));
   const double toWhite = -std::log2(double(levels.largest[bright]));
-  return float(std::round(10 * std::min(toMean, toWhite)) / 10);
+  return float(std::round(10 * std::min(toMean, toWhite)) / 10) + 0.0f;  // never -0
 }
 
 }  // namespace chromeball

@@ -16,10 +16,10 @@ namespace {
 constexpr float kBackground = 1e9f;  // distances beyond this mean that nothing was hit
 
 // 1 where the file says that a pixel shows a surface; empty if it has no such layer.
-Image coverageIn(const ImageFile& file) {
+Image coverageIn(const ImageFile& file, const std::string& path) {
   for (const char* name : {"alpha", "node"})
-    if (std::optional<Image> layer = findLayer(file, name)) return *std::move(layer);
-  std::optional<Image> depth = findLayer(file, "depth");
+    if (std::optional<Image> layer = layerOf(file, name, path)) return *std::move(layer);
+  std::optional<Image> depth = layerOf(file, "depth", path);
   if (!depth || depth->channels != 1) return {};
   for (float& d : depth->texels) d = d < kBackground;
   return *std::move(depth);
@@ -32,13 +32,17 @@ void addDisplayOptions(Command app, Settings& settings) {
     addSettingOption(app, settingNamed(name), settings);
 }
 
-DisplayTransform displayOf(const Settings& settings, const ImageFile& file) {
+DisplayTransform displayOf(const Settings& settings, const ImageFile& file,
+                           const std::string& path) {
   auto [transform, choosesExposure] = planDisplay(settings);
   if (!choosesExposure || (file.integers && !settings.has("output.exposure"))) return transform;
   const std::optional<float> ofRender = exposureIn(file.metadata);
-  const std::optional<Image> color = findColor(file);
+  std::optional<Image> color = findColor(file);
   if (!ofRender && !color) return transform;
-  transform.exposure = ofRender ? *ofRender : autoExposure(*color, coverageIn(file));
+  transform.exposure = ofRender
+                           ? *ofRender
+                           : autoExposure(inDisplayWindow(*std::move(color), file.placement, path),
+                                          coverageIn(file, path));
   fmt::print("{}\n", chosenInWords(transform.exposure));
   return transform;
 }

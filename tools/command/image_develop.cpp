@@ -82,7 +82,7 @@ void checkDisplay(const ImageDevelopArguments& arguments, const DevelopSettings&
 // Exposes an image that is written as radiance only to clip it, where that was asked for.
 DisplayTransform transformOf(const ImageDevelopArguments& arguments, const ImageFile& file) {
   if (isPng(arguments) || arguments.display.has("output.exposure"))
-    return displayOf(arguments.display, file);
+    return displayOf(arguments.display, file, arguments.in);
   return {};
 }
 
@@ -139,8 +139,8 @@ Input readInput(const ImageDevelopArguments& arguments, const DevelopSettings& s
   ImageFile file = openImageFile(arguments.in);
   Input input;
   input.frame = frameOf(arguments, file, settings);
-  input.transform = transformOf(arguments, file);
   if (settings.lens) input.depth = depthOf(file, arguments.in);
+  input.transform = transformOf(arguments, file);
   input.image.metadata = keptMetadata(file.metadata, arguments.in, arguments.out);
   if (!settings.isEmpty()) input.image.metadata["developed"] = historyOf(arguments, file.metadata);
   input.otherLayers = layerNames(file);

@@ -56,8 +56,8 @@ void run(const ImageViewArguments& arguments) {
   checkDistinct({arguments.out}, {arguments.in});
   const bool isLayer = !arguments.layer.empty();
   ImageFile file = openImageFile(arguments.in);
-  const DisplayTransform transform =
-      isLayer ? planDisplay(arguments.display).transform : displayOf(arguments.display, file);
+  const DisplayTransform transform = isLayer ? planDisplay(arguments.display).transform
+                                             : displayOf(arguments.display, file, arguments.in);
   const Image shown = isLayer ? viewOf(file, arguments.in, arguments.layer)
                               : colorAndAlphaOf(std::move(file), arguments.in);
   print(writeImage(arguments.out, shown, transform));

@@ -39,15 +39,6 @@ std::string timesInWords(double fraction, double elapsed) {
 
 }  // namespace
 
-bool LineTimes::isDue(double fraction, double seconds) {
-  constexpr double kLeast = 10, kMost = 60, kStep = 0.1;
-  const double since = seconds - seconds_;
-  if (since < kLeast || !(fraction >= fraction_ + kStep || since >= kMost)) return false;
-  if (!std::isnan(fraction)) fraction_ = fraction;
-  seconds_ = seconds;
-  return true;
-}
-
 ProgressBar::ProgressBar(ProgressStyle style, std::string title)
     : style_(style), title_(std::move(title)) {}
 

@@ -9,19 +9,11 @@
 #include <string>
 #include <thread>
 
+#include "base/line_times.h"
+
 namespace chromeball {
 
-// When progress off a terminal is worth a line: a tenth more is done, or a minute has passed; not
-// in the first ten seconds, nor sooner than that after another line.
-class LineTimes {
- public:
-  // `fraction` may be NaN. If true, there is a line now.
-  bool isDue(double fraction, double seconds);
-
- private:
-  double fraction_ = 0, seconds_ = 0;  // at the last line
-};
-
+// Lines come as LineTimes (base/line_times.h) says.
 enum class ProgressStyle { None, Bar, Lines };
 
 // A bar is drawn at most ten times a second, and at the end.
