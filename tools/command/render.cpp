@@ -113,7 +113,9 @@ std::string guidedInWords(const RenderResult& render) {
                                                : "light samples and bounces");
 }
 
-void printOutcome(const RenderDescription& description, const FinishedRender& result, bool quiet) {
+// `exposure`: the one that was chosen; nullopt: none was.
+void printOutcome(const RenderDescription& description, const FinishedRender& result,
+                  std::optional<float> exposure, bool quiet) {
   const RenderResult& render = result.render;
   if (render.interrupted && render.samples == 0)
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; saved as {}",
@@ -126,9 +128,9 @@ void printOutcome(const RenderDescription& description, const FinishedRender& re
                                       ? fmt::format("; --resume goes on from {}", *checkpoint)
                                       : ""));
   if (!quiet)
-    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samples,
+    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}{}: {}\n", render.samples,
                guidedInWords(render), result.seconds, inWords(result.noise),
-               inWords(result.denoised),
+               inWords(result.denoised), exposure ? ", " + chosenInWords(*exposure) : "",
                printable(fmt::format("{}", fmt::join(description.output.files, ", "))));
 }
 
@@ -156,12 +158,6 @@ void addState(const LoadedScene& loaded, std::optional<RenderPart>& part, Finish
   result.image.state = partState(*part, result.render);
 }
 
-float chosenExposure(const LoadedScene& loaded, const PreparedScene& prepared, bool quiet) {
-  const float stops = meteredExposure(loaded, prepared, interrupted);
-  if (!quiet && !interrupted) fmt::print("{}\n", chosenInWords(stops));
-  return stops;
-}
-
 void renderStill(const SceneFile& scene, const SceneOptions& options) {
   RenderDescription description = planRender(scene, options.settings);
   const Messages outputMessages = checkOutputs(description);
@@ -178,8 +174,11 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   prepareOutputs(loaded.description, loaded.files);
   catchInterrupts();
   watch.lap();
-  if (needsExposure(loaded.description))
-    loaded.description.output.expose(chosenExposure(loaded, prepared, options.quiet()));
+  std::optional<float> exposure;
+  if (needsExposure(loaded.description)) {
+    exposure = meteredExposure(loaded, prepared, interrupted);
+    loaded.description.output.expose(*exposure);
+  }
   seconds.prepare += watch.lap();
   description = loaded.description;
   std::optional<RenderPart> part = identified(loaded);
@@ -197,7 +196,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   writeImages(description, loaded, result, seconds);
 
   print(resultMessages(loaded, prepared, result), options.quiet());
-  printOutcome(description, result, options.quiet());
+  printOutcome(description, result, exposure, options.quiet());
 }
 
 // Whether all files of a frame exist.
@@ -277,7 +276,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
       if (!exposure) {
         const SequenceFrame first = sequence.frame(sequence.first());
         scene.show(planRender(first.scene, first.given));
-        exposure = chosenExposure(scene.loaded(), scene.prepared(), options.quiet());
+        exposure = meteredExposure(scene.loaded(), scene.prepared(), interrupted);
       }
       description.output.expose(*exposure);
     }
@@ -302,7 +301,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     writeImages(description, scene.loaded(), result, seconds);
     printNew(resultMessages(scene.loaded(), scene.prepared(), result), printed, options.quiet());
     if (!options.quiet()) fmt::print("frame {}: ", frame.number);
-    printOutcome(description, result, options.quiet());
+    printOutcome(description, result, exposure, options.quiet());
   }
   if (interrupted)
     throw Interrupted("interrupted; the same command goes on with the frames that are missing");
