@@ -135,18 +135,25 @@ TEST_F(Exposure, IsNotMeasuredForRadiance) {
   EXPECT_FALSE(metadataNumber(readExrMetadata(folder_ / "a.exr"), "exposure"));
 }
 
-// All parts of a render find the same, and their whole has it.
+// All parts of a render find the same, also one that sees nothing but sky, and their whole has it.
 TEST_F(Exposure, OfPartsIsThatOfTheWhole) {
+  Image sky = grey(8, 4, 12);
+  for (size_t i = 16; i < 32; ++i) sky.setRgb(i, Rgb(0.1f));
+  writeImage(folder_ / "probe.pfm", sky);
   const std::string whole = stopsIn(render({"--guide", "off", "-o", folder_ / "a.png"}).out);
-  for (const char* x : {"0", "24"})
-    EXPECT_EQ(stopsIn(render({"--guide", "off", "--crop", std::string(x) + ",0,24,32", "-o",
-                              folder_ / (x + std::string(".exr"))})
-                          .out),
-              whole);
-  run({"merge", folder_ / "0.exr", folder_ / "24.exr", "-o", folder_ / "m.png"});
+  const auto part = [&](const std::string& crop, const std::string& name) {
+    return stopsIn(render({"--guide", "off", "--crop", crop, "-o", folder_ / name}).out);
+  };
+  EXPECT_EQ(part("0,0,48,2", "top.exr"), whole);
+  EXPECT_EQ(part("0,2,48,30", "rest.exr"), whole);
+  const auto merge = [&](Words more) {
+    Words words{"merge", folder_ / "top.exr", folder_ / "rest.exr"};
+    words.insert(words.end(), more.begin(), more.end());
+    run(words);
+  };
+  merge({"-o", folder_ / "m.png"});
   EXPECT_TRUE(bytes("m.png") == bytes("a.png"));
-  run({"merge", folder_ / "0.exr", folder_ / "24.exr", "-o", folder_ / "z.png", "--exposure", "0",
-       "--tonemap", "aces"});
+  merge({"-o", folder_ / "z.png", "--exposure", "0", "--tonemap", "aces"});
   render({"--guide", "off", "-o", folder_ / "b.png", "--exposure", "0", "--tonemap", "aces"});
   EXPECT_TRUE(bytes("z.png") == bytes("b.png"));
 }

@@ -10,8 +10,8 @@
 namespace chromeball {
 namespace {
 
-// Measured on one core, and rounded up.
-constexpr double kSecondsPerPngByte = 2e-7, kSecondsPerExrChannel = 2e-7, kSecondsPerOther = 5e-8;
+// Measured, and rounded up.
+constexpr double kSecondsPerPngByte = 5e-8, kSecondsPerExrChannel = 6e-8, kSecondsPerOther = 3e-8;
 constexpr double kMostOfLimit = 0.75, kMargin = 1.15;
 
 // An image whose neighbours differ, so that all of the filter runs.
