@@ -52,7 +52,9 @@ TEST(Alpha, PngStoresStraightAlphaWithEveryToneCurve) {
 TEST(Alpha, ViewPreservesAlpha) {
   const TemporaryFolder folder;
   writeImage(folder / "a.exr", ramp());
-  EXPECT_EQ(runCommand({"image", "view", folder / "a.exr", folder / "a.png"}).status, 0);
+  EXPECT_EQ(
+      runCommand({"image", "view", folder / "a.exr", folder / "a.png", "--exposure", "0"}).status,
+      0);
   expectStraight(folder / "a.png", {});
   // Viewing the output again gives the same image.
   EXPECT_EQ(runCommand({"image", "view", folder / "a.png", folder / "b.png"}).status, 0);
@@ -90,8 +92,8 @@ TEST(Alpha, TransparentRendersHaveTheCoverageOfEachPixel) {
   writeImage(out / "probe.exr", constantProbe({8, 4}, Rgb(2)));
   const CommandResult result =
       runCommand({"render", model.save(), "--probe", out / "probe.exr", "--transparent", "--size",
-                  "8x8", "--samples", "1024", "--quiet", "-o", out / "a.exr", "-o", out / "a.png",
-                  "-o", out / "a.pfm"});
+                  "8x8", "--samples", "1024", "--exposure", "0", "--quiet", "-o", out / "a.exr",
+                  "-o", out / "a.png", "-o", out / "a.pfm"});
   ASSERT_EQ(result.status, 0) << result.error;
   const ImageFile exr = readImageFile(out / "a.exr");
   const Image color = *findColorAndAlpha(exr), flat = readImage(out / "a.pfm");

@@ -41,6 +41,7 @@ const std::map<std::string_view, std::function<void(D&)>> kBring = {
        d.composite->passes = Passes::Two;
      }},
     {"a clamp", [](D& d) { d.settings.clamp = 1.0f; }},
+    {"an exposure that the picture decides", [](D& d) { d.output.choosesExposure = true; }},
     {"regularisation", [](D& d) { d.settings.regularize = true; }},
     {"denoising", [](D& d) { d.settings.denoise = true; }},
     {"layers to denoise later", [](D& d) { d.output.layers.push_back("denoise"); }},

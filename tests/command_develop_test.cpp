@@ -43,9 +43,9 @@ TEST(CommandDevelop, BlurIsBeforeToneMapping) {
   writeLamp(in);
   run({in, linear, "--motion", "40@0"});
   EXPECT_NEAR(readImage(linear).rgb(20, 16).x, 100.0 / 40 + 0.01, 1e-2);
-  run({in, out, "--motion", "40@0"});
+  run({in, out, "--motion", "40@0", "--exposure", "0"});
   EXPECT_EQ(readImage(out).rgb(20, 16).x, 1) << "the streak is white";
-  run({in, out, "--motion", "40@0", "--clip", "1"});
+  run({in, out, "--motion", "40@0", "--clip", "1", "--exposure", "0"});
   EXPECT_LT(readImage(out).rgb(20, 16).x, 0.05f) << "clipped first, it is grey";
   // White is at radiance 8 with an exposure of -3 stops: that is where the image is clipped.
   run({in, linear, "--clip", "1", "--exposure", "-3"});
@@ -272,8 +272,8 @@ TEST(SlowCommandDevelop, RendersHaveTheirPngDeveloped) {
   probe.setRgb(1, 0, Rgb(90, 40, 10));
   writeImage(folder / "probe.pfm", probe);
   const std::vector<std::string> render{
-      "render", folder / "m.gltf", "--probe", folder / "probe.pfm", "--size",
-      "48x32",  "--samples",       "4",       "--tonemap",          "reinhard"};
+      "render", folder / "m.gltf", "--probe",  folder / "probe.pfm", "--size", "48x32", "--samples",
+      "4",      "--tonemap",       "reinhard", "--exposure",         "0.5"};
   const auto rendered = [&](std::vector<std::string> more) {
     more.insert(more.begin(), render.begin(), render.end());
     const CommandResult result = runCommand(more);

@@ -52,6 +52,12 @@ std::vector<OptionValue> valuesOf(const Setting& s) {
       values.push_back({"many", false});
       values.push_back({"2x", false});
       break;
+    case SettingType::NumberOrAuto:
+      values.push_back({"auto", true});
+      values.push_back({"off", false});
+      limit(s.range.min, s.range.excludesMin, -0.001);
+      limit(s.range.max, s.range.excludesMax, 1);
+      break;
     case SettingType::Factor:
       values.push_back({"off", true});
       values.push_back({"on", false});

@@ -97,6 +97,8 @@ constexpr Feature kDisplay{"a display", "display",
                            [](const D& d) { return d.origins.has("display"); }};
 constexpr Feature kScaleByPlate{"a probe scaled by the plate", "probe.scale",
                                 [](const D& d) { return d.probe.isScaledByPlate; }};
+constexpr Feature kAutoExposure{"an exposure that the picture decides", "output.exposure",
+                                [](const D& d) { return d.output.choosesExposure; }};
 
 // Features that may be missing.
 constexpr Feature kNoPlate{"no plate", "", [](const D& d) { return !hasPlate(d); }};
@@ -196,6 +198,8 @@ constexpr std::array kConflicts = {
     Conflict{kWriteEvery, kTwoPass, kNotTwo},
     Conflict{kPreview, kTwoPass, kNotTwo},
     Conflict{kDisplay, kTwoPass, kNotTwo},
+    Conflict{kAutoExposure, kComposite,
+             "a composite is shown as its photograph is; give a number of stops"},
     Conflict{kOrbit, kPlate, "the plate of a composite does not turn"},
     Conflict{kTransparent, kComposite,
              "is for plain renders; the layer alpha of a composite shows its objects"},

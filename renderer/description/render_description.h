@@ -104,8 +104,11 @@ struct OutputDescription {
   bool makesFolders = false;        // the scene file names the outputs
   std::vector<std::string> layers;  // as they were asked for
   std::optional<std::string> stats;
-  DevelopSettings develop;   // of a .png, before `display`
-  DisplayTransform display;  // of a .png
+  DevelopSettings develop;       // of a .png, before `display`
+  DisplayTransform display;      // of a .png
+  bool choosesExposure = false;  // the display's is not known: meteredExposure()
+
+  void expose(float stops) { display.exposure = stops, choosesExposure = false; }
 };
 
 struct RenderDescription : SceneParts {

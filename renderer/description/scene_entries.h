@@ -87,6 +87,7 @@ struct SceneParts {
   std::vector<SourceEntry> sources;  // [[source]]
   std::vector<std::string> lightLists;  // files that lamps and sources are from
   std::optional<SurroundingsEntry> surroundings;
+  std::string quality;  // the preset, and the settings that are by it; empty: none
   Origins origins;
   std::vector<std::string> warnings;  // "FILE:LINE: ...": allowed, but probably a mistake
 };

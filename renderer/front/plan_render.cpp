@@ -2,7 +2,6 @@
 #include "front/plan_render.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -164,13 +163,11 @@ RunDescription plannedRun(const Settings& s) {
           .isOfFrames = s.has("frames")};
 }
 
-// A .png clips relative to its white.
-DevelopSettings plannedDevelop(const Settings& s, float exposure) {
+DevelopSettings plannedDevelop(const Settings& s) {
   const auto text = s.getIfGiven<std::string>("output.develop");
   if (!text) return {};
   const std::string location = s.location("output.develop");
   DevelopSettings develop = parseDevelop(*text, location);
-  if (develop.clip) *develop.clip *= std::exp2(-exposure);
   if (develop.lens &&
       std::ranges::count(s.get<std::vector<std::string>>("output.aovs"), "depth") == 0)
     throw InputError(fmt::format("{}: depth-blur needs the layer `depth`", location),
@@ -182,13 +179,35 @@ OutputDescription plannedOutput(const Settings& s) {
   OutputDescription output{.files = s.get<std::vector<std::string>>("output.file"),
                            .layers = s.get<std::vector<std::string>>("output.aovs"),
                            .stats = s.getIfGiven<std::string>("stats")};
-  output.display = {parseToneOperator(s.get<std::string>("tonemap")),
-                    float(s.get<double>("exposure"))};
-  output.develop = plannedDevelop(s, output.display.exposure);
+  const PlannedDisplay display = planDisplay(s);
+  output.display = display.transform, output.choosesExposure = display.choosesExposure;
+  output.develop = plannedDevelop(s);
   return output;
 }
 
+// From a temperature, or a colour.
+Rgb plannedBalance(const Settings& s) {
+  const auto light = s.getIfGiven<std::vector<double>>("output.white_balance");
+  if (!light) return Rgb(1);
+  if (light->size() == 3 && std::ranges::all_of(*light, isPositiveFloat))
+    return balanceOf(Rgb(colorOf(*light)));
+  const double kelvin = light->front();
+  if (light->size() == 3 || kelvin < kLeastKelvin || kelvin > kMostKelvin)
+    throwInput("{}: should be {:g} to {:g} kelvin, or a colour with channels above 0",
+               s.location("output.white_balance"), kLeastKelvin, kMostKelvin);
+  return balanceOf(kelvin);
+}
+
 }  // namespace
+
+PlannedDisplay planDisplay(const Settings& settings) {
+  const auto exposure = settings.get<std::string>("output.exposure");
+  double stops = 0;
+  const bool isChosen = !toNumber(exposure, stops);  // the only other text is "auto"
+  return {{parseToneOperator(settings.get<std::string>("output.tonemap")), float(stops),
+           plannedBalance(settings)},
+          isChosen};
+}
 
 RenderDescription planRender(SceneFile scene, const Settings& over) {
   overrideSettings(scene, over);
@@ -210,6 +229,8 @@ RenderDescription planRender(SceneFile scene, const Settings& over) {
   description.output.makesFolders = !over.has("output.file");
   description.run = plannedRun(s);
   if (scene.composite) planComposite(s, std::move(*scene.composite), description);
+  if (description.composite && !s.has("output.exposure"))
+    description.output.choosesExposure = false;
   checkCapabilities(description);
   return description;
 }

@@ -13,6 +13,13 @@ namespace chromeball {
 // plate.
 RenderDescription planRender(SceneFile scene, const Settings& over = {});
 
+// The tone operator, white balance and exposure of a .png. Throws InputError.
+struct PlannedDisplay {
+  DisplayTransform transform;
+  bool choosesExposure;  // it is "auto", and `transform` has 0
+};
+PlannedDisplay planDisplay(const Settings& settings);
+
 // The composite of a description, from its settings.
 
 // Reads the plate, whose size the image takes unless it has another. Throws InputError.

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "front/arguments.h"
+#include "front/quality.h"
 #include "front/scene_file_camera.h"
 #include "front/scene_file_sections.h"
 #include "front/toml_section.h"
@@ -219,12 +220,10 @@ void applyShadowCatcher(SceneFile& file) {
 
 void overrideSettings(SceneFile& file, const Settings& over) {
   mergeCamera(file, over);
-  const std::string_view limits[] = {"render.samples", "render.time", "render.noise"};
-  // The limits are one decision.
-  if (std::ranges::any_of(limits, [&](std::string_view name) { return over.has(name); }))
-    for (const std::string_view name : limits) file.settings.erase(name);
+  if (givesLimit(over) || over.has("render.quality")) eraseLimits(file.settings);
   if (over.has("probe.scale")) file.plateScale.reset();
   file.settings.merge(over);
+  file.quality = applyQuality(file.settings);
   applyToModels(over, file);
   if (!file.probeTurns.empty() && !over.has("probe.rotation")) {
     file.origins.set("probe.rotation_keys", file.probeTurns.front().location);

@@ -25,6 +25,7 @@ class Sequence {
   Sequence(const SceneFile& scene, const Settings& given);
 
   const std::vector<int>& numbers() const { return numbers_; }  // empty: a still
+  int first() const { return first_; }                          // of those that --frames names
   SequenceFrame frame(int number) const;                        // throws InputError
   Messages messages() const;  // about keys of the scene file without effect on frames
 

@@ -21,6 +21,7 @@ constexpr SettingTypeInfo kTypeInfos[] = {
     {"integer", "", 1},
     {"number", "", 2},
     {"number or `\"off\"`", "\"off\" or a factor, 0 or more", 2},
+    {"number or `\"auto\"`", "", 4},
     {"", "", 3},
     {"name", "", 4},
     {"name, or an array", "", 5},
@@ -97,6 +98,13 @@ void checkNumbers(const Setting& setting, const SettingValue& value, const std::
       throwInput("{}: `{}` is not {}", location, x, expectedNumber(setting, setting.range));
 }
 
+void checkNumberOrAuto(const Setting& setting, const std::string& text,
+                       const std::string& location) {
+  double x = 0;
+  const bool isNumber = toNumber(text, x) && std::abs(x) <= FLT_MAX && setting.range.contains(x);
+  if (text != "auto" && !isNumber) refuse(setting, text, location);
+}
+
 }  // namespace
 
 std::string Setting::name() const {
@@ -112,6 +120,7 @@ std::string expected(const Setting& s) {
   const std::string unit = s.unit.empty() ? "" : fmt::format(" ({})", s.unit);
   if (s.type == Type::Integer || s.type == Type::Number)
     return describeRange(s.range, s.type == Type::Integer) + unit;
+  if (s.type == Type::NumberOrAuto) return "auto or " + describeRange(s.range, false) + unit;
   if (s.type == Type::Choice) return fmt::format("one of {}", fmt::join(s.choices, ", "));
   if (s.type == Type::Choices)
     return fmt::format("one or several of {}", fmt::join(s.choices, ", "));
@@ -177,6 +186,8 @@ void checkSetting(const Setting& setting, const SettingValue& value, const std::
           !(std::abs(x) <= FLT_MAX) || !setting.range.contains(x))
         refuse(setting, toText(value), location);
       return;
+    case Type::NumberOrAuto:
+      return checkNumberOrAuto(setting, std::get<std::string>(value), location);
     case Type::Numbers:
       return checkNumbers(setting, value, location);
     case Type::Choice:

@@ -14,24 +14,25 @@
 namespace chromeball {
 
 // Flag: bool. Integer: uint64_t. Number and Factor: double. Numbers: a list of doubles. Choice,
-// Name and File: string. Choices and Files: a list of strings. Size: ImageSize.
+// NumberOrAuto, Name and File: string. Choices and Files: a list of strings. Size: ImageSize.
 using SettingValue = std::variant<bool, uint64_t, double, std::vector<double>, std::string,
                                   std::vector<std::string>, ImageSize>;
 
 enum class SettingType {
   Flag,
-  Integer,   // whole, in the range
-  Number,    // finite as a float, in the range
-  Factor,    // the same; "off" is 0
-  Numbers,   // one or several such numbers; `form` describes them
-  Choice,    // one of the choices
-  Choices,   // one or several of the choices
-  Name,      // a string, validated by the code that uses it
-  File,      // an existing file
-  Source,    // an existing file or folder
-  Files,     // one or several files to write
-  Size,      // width and height in pixels
-  Compound,  // a structured key with its own reader; `form` describes it
+  Integer,       // whole, in the range
+  Number,        // finite as a float, in the range
+  Factor,        // the same; "off" is 0
+  NumberOrAuto,  // the text of a Number, or "auto"
+  Numbers,       // one or several such numbers; `form` describes them
+  Choice,        // one of the choices
+  Choices,       // one or several of the choices
+  Name,          // a string, validated by the code that uses it
+  File,          // an existing file
+  Source,        // an existing file or folder
+  Files,         // one or several files to write
+  Size,          // width and height in pixels
+  Compound,      // a structured key with its own reader; `form` describes it
 };
 
 // What the settings of a type have in common.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "front/settings.h"
-#include "image/tonemap.h"
 
 namespace chromeball {
 
@@ -62,19 +61,6 @@ std::vector<Setting> commandRows() {
   rows.insert(
       rows.end(),
       {
-          {.option = "tonemap",
-           .type = Choice,
-           .fallback = "none",
-           .choices = toneOperatorNames(),
-           .help = "Tone operator of a .png.",
-           .effect = Effect::Display},
-          {.option = "exposure",
-           .argument = "STOPS",
-           .type = Number,
-           .unit = "stops",
-           .fallback = "0",
-           .help = "Exposure of a .png: radiance times 2^STOPS.",
-           .effect = Effect::Display},
           {.option = "allow-external",
            .type = Flag,
            .help = "Lets models name files outside their own folders."},
@@ -188,7 +174,8 @@ std::vector<Setting> commandRows() {
   rows.insert(rows.end(), {
                               {.option = "progress",
                                .type = Flag,
-                               .help = "Shows progress also if standard error is not a terminal.",
+                               .help = "Shows the progress bar also if standard error is not a "
+                                       "terminal, where there are lines.",
                                .effect = Effect::Run},
                               {.option = "quiet",
                                .type = Flag,

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include "composite/layers.h"
+#include "front/quality.h"
 #include "front/settings.h"
+#include "image/tonemap.h"
 #include "render/render.h"
 
 namespace chromeball {
@@ -13,6 +17,12 @@ std::vector<std::string_view> layers() {
     if (info.layer != CompositeLayer::Alpha) names.push_back(info.name);
   names.insert(names.end(), {kLightGroups, kShadowMattes});
   return names;
+}
+
+std::string_view qualityHelp() {
+  static const std::string help =
+      fmt::format("Stands for other settings, of which given ones win. {}.", qualitiesInWords());
+  return help;
 }
 
 }  // namespace
@@ -32,6 +42,12 @@ std::vector<Setting> renderRows() {
   addRenderOnly(
       rows, Effect::Limit,
       {
+          {.key = "quality",
+           .argument = "NAME",
+           .type = Choice,
+           .absent = "the defaults of the others",
+           .choices = qualityNames(),
+           .help = qualityHelp()},
           {.key = "samples",
            .type = Integer,
            .range = {.min = 1, .max = kMaxSamples},
@@ -44,7 +60,9 @@ std::vector<Setting> renderRows() {
            .range = kPositive,
            .unit = "seconds",
            .absent = "no limit",
-           .help = "Stops after about this time, but not before each pixel has 4 samples."},
+           .help = "Takes about this time, with denoising and writing but without loading; not "
+                   "before each "
+                   "pixel has 4 samples."},
           {.key = "noise",
            .argument = "PERCENT",
            .type = Number,
@@ -188,6 +206,35 @@ std::vector<Setting> outputRows() {
        .help = "Optics of a .png, before tone mapping, as the options of `image develop`: "
                "\"bloom=.75:1,.15:8,.07:32,.03:128 vignette=.4\"; also clip, depth-blur, motion, "
                "glare. An .exr stays as rendered.",
+       .effect = Effect::Display,
+       .renderOnly = true},
+      {.key = "exposure",
+       .argument = "STOPS",
+       .type = NumberOrAuto,
+       .range = {.min = -100, .max = 100},
+       .unit = "stops",
+       .fallback = "auto",
+       .help =
+           "Exposure of a .png: radiance times 2^STOPS. auto: chosen from the surfaces in view, "
+           "and printed; for a sequence, from its first frame; for a composite, 0.",
+       .effect = Effect::Display},
+      {.key = "tonemap",
+       .argument = "NAME",
+       .type = Choice,
+       .fallback = "none",
+       .choices = toneOperatorNames(),
+       .help = "Tone operator of a .png.",
+       .effect = Effect::Display},
+      {.key = "white_balance",
+       .argument = "KELVIN",
+       .type = Numbers,
+       .form = "a number, or three",
+       .counts = {1, 3},
+       .range = kNotNegative,
+       .unit = "kelvin",
+       .absent = "6504",
+       .help = "The light that is white in a .png: the temperature of a black body, 2000 to 25000, "
+               "or a colour. A lower temperature makes the picture bluer.",
        .effect = Effect::Display,
        .renderOnly = true},
   };

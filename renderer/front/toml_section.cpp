@@ -97,6 +97,9 @@ SettingValue Entry::value() const {
       return number();
     case SettingType::Factor:
       return node->is_string() && text() == "off" ? 0.0 : number();
+    case SettingType::NumberOrAuto:
+      if (!node->is_number() && !node->is_string()) mustBe(expected(*setting));
+      return node->is_number() ? toText(number()) : choice();
     case SettingType::Numbers:
       return numbers();
     case SettingType::Choice:

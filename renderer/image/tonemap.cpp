@@ -66,7 +66,27 @@ Rgb toned(ToneOperator tone, const Rgb& c) {
   }
 }
 
+// The colour of a black body, of luminance 1.
+Rgb blackBody(double kelvin) {
+  const double t = 1e3 / kelvin;
+  const double x = kelvin < 4000 ? ((-0.2661239 * t - 0.2343589) * t + 0.8776956) * t + 0.179910
+                                 : ((-3.0258469 * t + 2.1070379) * t + 0.2226347) * t + 0.240390;
+  const double y = kelvin < 2222 ? ((-1.1063814 * x - 1.34811020) * x + 2.18555832) * x - 0.20219683
+                   : kelvin < 4000
+                       ? ((-0.9549476 * x - 1.37418593) * x + 2.09137015) * x - 0.16748867
+                       : ((3.0817580 * x - 5.87338670) * x + 3.75112997) * x - 0.37001483;
+  const glm::dvec3 xyz(x / y, 1, (1 - x - y) / y);
+  // XYZ to linear Rec. 709 (glm is column-major).
+  const glm::dmat3 toRgb(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259,
+                         -0.4985314, 0.0415560, 1.0572252);
+  return Rgb(toRgb * xyz);
+}
+
 }  // namespace
+
+Rgb balanceOf(const Rgb& light) { return luminance(light) / light; }
+
+Rgb balanceOf(double kelvin) { return balanceOf(blackBody(kelvin) / blackBody(6504)); }
 
 float linearToSrgb(float linear) {
   const float v = std::fabs(linear);
@@ -93,7 +113,7 @@ ToneOperator parseToneOperator(std::string_view name) {
 }
 
 Rgb display(const DisplayTransform& transform, const Rgb& radiance) {
-  Rgb c = radiance * std::exp2(transform.exposure);
+  Rgb c = radiance * std::exp2(transform.exposure) * transform.balance;
   for (int i = 0; i < 3; ++i) c[i] = c[i] > 0 ? std::min(c[i], kMaxChannel) : 0.0f;
   return glm::clamp(toned(transform.tone, c), Rgb(0), Rgb(1));
 }

@@ -30,7 +30,18 @@ const std::vector<std::string_view>& toneOperatorNames();  // in the order of th
 struct DisplayTransform {
   ToneOperator tone = ToneOperator::None;
   float exposure = 0;  // stops: radiance is multiplied by 2^exposure
+  Rgb balance{1};      // and by this
 };
+
+// The factors on red, green and blue that make a light white and keep its luminance.
+
+// Of a light of this colour, with channels above 0.
+Rgb balanceOf(const Rgb& light);
+inline constexpr double kLeastKelvin = 2000, kMostKelvin = 25000;
+// Of a black body, relative to one of 6504 K, the correlated temperature of our white, D65: 6504
+// changes nothing. Kim et al. 2002, "Design of advanced color temperature control system for HDTV
+// applications", eq. 10 and 11.
+Rgb balanceOf(double kelvin);
 
 // Display-linear colour in [0, 1]. NaN and negative channels count as 0.
 Rgb display(const DisplayTransform& transform, const Rgb& radiance);

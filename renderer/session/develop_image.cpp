@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "session/develop_image.h"
 
+#include <cmath>
+
 #include "base/file.h"
 
 namespace chromeball {
@@ -34,7 +36,9 @@ OutputImage developed(const RenderDescription& description, const OutputImage& i
   OutputImage result{{color}, image.metadata};
   const Image* depth = findDepth(image);
   const ViewFrame frame = viewFrame(color.image, image.placement, image.metadata);
-  const DevelopSettings settings = possible(description.output.develop, frame, depth, messages);
+  DevelopSettings settings = possible(description.output.develop, frame, depth, messages);
+  if (settings.clip)  // a .png clips relative to its white
+    *settings.clip *= std::exp2(-description.output.display.exposure);
   const Messages found = inWords(develop(result.layers.front().image, settings, depth, frame));
   messages.insert(messages.end(), found.begin(), found.end());
   return result;

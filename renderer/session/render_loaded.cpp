@@ -9,22 +9,22 @@
 #include "session/memory_estimate.h"
 #include "session/run_composite.h"
 #include "session/scene_lighting.h"
+#include "session/time_kept.h"
 #include "transport/light_groups.h"
 
 namespace chromeball {
 namespace {
 
 FinishedRender renderPlain(const LoadedScene& loaded, const PreparedScene& prepared,
-                           const Progress& progress, const std::atomic<bool>& stop,
-                           RenderControl* control) {
+                           const RenderSettings& settings, const Progress& progress,
+                           const std::atomic<bool>& stop, RenderControl* control) {
   const RenderDescription& description = loaded.description;
   const double share = description.settings.denoisesAtEnd() ? kRenderShare : 1;
   std::optional<CacheFile> records;
   if (description.settings.cacheError) records.emplace(loaded);
-  RenderResult result =
-      render(*prepared.world, loaded.camera, *prepared.lighting, description.settings,
-             [&](double fraction) { progress(share * fraction); }, stop, control,
-             {prepared.environment.get(), records ? &records->cache() : nullptr});
+  RenderResult result = render(*prepared.world, loaded.camera, *prepared.lighting, settings,
+                               [&](double fraction) { progress(share * fraction); }, stop, control,
+                               {prepared.environment.get(), records ? &records->cache() : nullptr});
   if (records) records->write();
   FinishedImage finished = finish(finishPlan(loaded, result), result, progress, stop);
   return {std::move(finished), std::move(result)};
@@ -96,17 +96,23 @@ FinishedRender renderLoaded(const LoadedScene& loaded, const PreparedScene& prep
                             RenderControl* control) {
   const RenderDescription& description = loaded.description;
   Stopwatch watch;
-  FinishedRender result = description.composite
-                              ? renderComposite(loaded, prepared, progress, stop, control)
-                              : renderPlain(loaded, prepared, progress, stop, control);
+  const KeptTime kept = keepTime(description);
+  FinishedRender result =
+      description.composite
+          ? renderComposite(loaded, prepared, kept.settings, progress, stop, control)
+          : renderPlain(loaded, prepared, kept.settings, progress, stop, control);
   loaded.scene.checkTexels();
   result.render.interrupted |= description.settings.denoisesAtEnd() && !result.denoised;
   result.seconds = watch.lap();
+  if (constexpr double kNotable = 0.05; kept.seconds > kNotable)
+    addNote(result.messages, "{}: {:.2g} s of it were kept for {}writing",
+            description.origins.of("render.time"), kept.seconds,
+            description.settings.denoisesAtEnd() ? "denoising and " : "");
   if (result.render.overrun > 0)
     addWarning(result.messages,
                "{}: the first pass, which is always completed, took {:.2g} s, longer than {:g}",
                description.origins.of("render.time"), result.render.overrun,
-               *description.settings.timeLimit);
+               *kept.settings.timeLimit);
   return result;
 }
 

@@ -118,6 +118,9 @@ json statistics(const LoadedScene& loaded, const FinishedRender& result,
       {"command", commandLine()},
       {"job", describeLoaded(loaded)},
       {"scene", description.path},
+      {"quality", description.quality.empty() ? json() : json(description.quality)},
+      {"exposure",
+       description.output.choosesExposure ? json() : json(description.output.display.exposure)},
       {"strategy", resolveStrategy(description.lighting.strategy)},
       {"seed", description.settings.seed},
       {"max_depth", description.settings.maxDepth},
@@ -174,6 +177,9 @@ Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
   metadata["command"] = commandLine();
   metadata["seconds"] = float(seconds);
   metadata.merge(sampleMetadata(finished, render));
+  if (!description.quality.empty()) metadata["quality"] = description.quality;
+  if (!description.output.choosesExposure)
+    metadata["exposure"] = description.output.display.exposure;
   if (description.settings.clamp)
     metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
   const RenderSettings& settings = description.settings;
@@ -206,8 +212,12 @@ Messages checkOutputs(const RenderDescription& description) {
     if (description.origins.has(setting))
       addWarning(messages, "{} has no effect: {}", namedOrigin(description, setting), why);
   };
-  for (const char* name : {"tonemap", "exposure", "output.develop"})
-    if (!has(".png")) warn(name, fmt::format("it is for .png; {} holds radiance", files.front()));
+  // Keys of a scene file are for whatever it is rendered to. A part keeps its exposure for the whole.
+  for (const char* name :
+       {"output.tonemap", "output.white_balance", "output.develop", "output.exposure"})
+    if (!has(".png") && description.origins.of(name).starts_with("--") &&
+        !(name == std::string_view("output.exposure") && description.settings.isPart()))
+      warn(name, fmt::format("it is for .png; {} holds radiance", files.front()));
   const bool isForLens = description.output.develop.lens &&
                          description.output.layers == std::vector<std::string>{"depth"};
   if (!has(".exr") && !isForLens) warn("output.aovs", "only an .exr holds layers");

@@ -71,8 +71,8 @@ Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale) {
 }  // namespace
 
 FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
-                               const Progress& progress, const std::atomic<bool>& stop,
-                               RenderControl* control) {
+                               const RenderSettings& settings, const Progress& progress,
+                               const std::atomic<bool>& stop, RenderControl* control) {
   const RenderDescription& description = loaded.description;
   const CompositeDescription& plan = *description.composite;
   const bool solves = loaded.projection != nullptr;
@@ -83,8 +83,8 @@ FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& p
         loaded, prepared, [&](double fraction) { progress(share * fraction / 2); }, stop);
   const bool needsBehind = std::ranges::count(plan.layers, "l_noobj") > 0;
   CompositeRender rendered = renderComposite(
-      *prepared.world, loaded.camera, *prepared.lighting, plan.plate, description.settings,
-      plan.passes, needsBehind,
+      *prepared.world, loaded.camera, *prepared.lighting, plan.plate, settings, plan.passes,
+      needsBehind,
       [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); }, stop,
       control);
   FinishedImage finished =

@@ -10,8 +10,8 @@ namespace chromeball {
 // Estimates the local scene's reflectance if the description requests it, then renders the
 // composite.
 FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
-                               const Progress& progress, const std::atomic<bool>& stop,
-                               RenderControl* control);
+                               const RenderSettings& settings, const Progress& progress,
+                               const std::atomic<bool>& stop, RenderControl* control);
 
 // The local scene of a composite, and the probe's scale by its plate.
 

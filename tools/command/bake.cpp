@@ -189,7 +189,7 @@ class Bake {
     tracer_.emplace(*prepared_.world, *prepared_.lighting, PathSettings{});
     light_.emplace(*tracer_, settings_.what, settings_.distance);
     print(loaded_.messages, options_.quiet());  // after the last error that input can cause
-    ProgressBar bar(options_.showsProgress(), "baking");
+    ProgressBar bar(options_.progress(), "baking");
     BakeResult baked = bake(*prepared_.world, *prepared_.lighting, meshes_, points, settings_,
                             [&](double fraction) { bar.update(fraction); });
     if (baked.invalid.total() > 0)

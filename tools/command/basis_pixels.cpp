@@ -99,7 +99,7 @@ void runBasisPixels(const BasisArguments& a) {
   const BasisRenderer renderer(world, loaded.camera, basis, s);
   catchInterrupts();
   const Written written = [&] {
-    ProgressBar bar(a.showsProgress());
+    ProgressBar bar(a.progress());
     return writeStage(renderer, s, rows, a, metadataOf(a, description),
                       [&](double done) { bar.update(done); });
   }();

@@ -58,7 +58,7 @@ class BasisVertices {
  private:
   void writeDiffuse(const World& world, const std::vector<PlacedMesh>& meshes,
                     const std::vector<BakePoint>& points) const {
-    ProgressBar bar(options_.showsProgress(), "transfer");
+    ProgressBar bar(options_.progress(), "transfer");
     const VertexTransfer transfer = estimateTransfer(
         world, meshes, points, basis_, settings(), [&](double fraction) { bar.update(fraction); });
     report(transfer.invalid);
@@ -68,7 +68,7 @@ class BasisVertices {
 
   void writeGlossy(const World& world, const std::vector<PlacedMesh>& meshes,
                    const std::vector<BakePoint>& points) {
-    ProgressBar bar(options_.showsProgress(), "transfer");
+    ProgressBar bar(options_.progress(), "transfer");
     const GlossyTransfer transfer = estimateGlossyTransfer(
         world, meshes, points, basis_, settings(), [&](double fraction) { bar.update(fraction); });
     report(transfer.matrices.invalid);

@@ -127,11 +127,6 @@ Option Command::addParsedOption(const std::string& names,
   return Option(app_->add_option(names, take, help));
 }
 
-Option Command::addFlag(const std::string& names, const std::function<void()>& set,
-                        const std::string& help) {
-  return Option(app_->add_flag_callback(names, set, help));
-}
-
 Option Command::addFlagWithValue(const std::string& names,
                                  const std::function<void(const std::string&)>& set,
                                  const std::string& help) {

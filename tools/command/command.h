@@ -74,8 +74,6 @@ class Command {
   using Words = std::vector<std::string>;
   Option addParsedOption(const std::string& names, const std::function<void(const Words&)>& set,
                          const std::string& help);
-  Option addFlag(const std::string& names, const std::function<void()>& set,
-                 const std::string& help);
   // --NAME or --NAME=VALUE: with "true" or the value. The next word is not the value.
   Option addFlagWithValue(const std::string& names,
                           const std::function<void(const std::string&)>& set,

@@ -237,7 +237,7 @@ void compare(const CompareArguments& a, const Command& command) {
   };
   catchInterrupts();
   const bool whole = [&] {
-    ProgressBar bar(a.scene.showsProgress());
+    ProgressBar bar(a.scene.progress());
     return run.run([&](double fraction) { bar.update(fraction); }, [&] { write(results()); },
                    interrupted);
   }();

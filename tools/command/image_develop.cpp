@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "commands.h"
+#include "display_options.h"
 #include "front/arguments.h"
 #include "front/develop_text.h"
 #include "image/io/output_file.h"
@@ -29,11 +30,11 @@ struct OpticsOption {
 };
 
 struct ImageDevelopArguments {
-  std::string in, out, tone = "none";
+  std::string in, out;
+  Settings display;
   // The steps in the order in which they are applied; the last also takes a file.
   std::vector<OpticsOption> optics = {{"clip"},  {"depth-blur"}, {"motion"},
                                       {"bloom"}, {"glare"},      {"vignette"}};
-  float exposure = 0;
   std::optional<double> fov;
   bool exact = false;
 
@@ -61,18 +62,28 @@ DevelopSettings settingsOf(const ImageDevelopArguments& arguments) {
     else if (value)
       setDevelop(settings, name, *value, fmt::format("--{}", name));
   if (arguments.exact) settings.method = GaussianMethod::Exact;
-  if (settings.clip) *settings.clip *= std::exp2(-arguments.exposure);
   return settings;
 }
 
+bool isPng(const ImageDevelopArguments& arguments) {
+  return lowerExtension(arguments.out) == ".png";
+}
+
 void checkDisplay(const ImageDevelopArguments& arguments, const DevelopSettings& settings) {
-  if (!std::isfinite(arguments.exposure) || std::fabs(arguments.exposure) > 100)
-    throwInput("--exposure: {} should be -100 to 100 stops", arguments.exposure);
-  if (lowerExtension(arguments.out) == ".png") return;
-  if (arguments.tone != "none")
-    throwInput("--tonemap: {} is linear; tone mapping is for .png", arguments.out);
-  if (arguments.exposure != 0 && !settings.clip)
+  if (isPng(arguments)) return;
+  for (const char* name : {"output.tonemap", "output.white_balance"})
+    if (arguments.display.has(name))
+      throwInput("{}: {} is linear; tone mapping is for .png", arguments.display.location(name),
+                 arguments.out);
+  if (arguments.display.has("output.exposure") && !settings.clip)
     throwInput("--exposure: {} is linear, and nothing is clipped; leave it out", arguments.out);
+}
+
+// Exposes an image that is written as radiance only to clip it, where that was asked for.
+DisplayTransform transformOf(const ImageDevelopArguments& arguments, const ImageFile& file) {
+  if (isPng(arguments) || arguments.display.has("output.exposure"))
+    return displayOf(arguments.display, file, arguments.in);
+  return {};
 }
 
 void checkEffects(const ImageDevelopArguments& arguments, const DevelopSettings& settings) {
@@ -121,6 +132,7 @@ struct Input {
   std::vector<std::string> otherLayers;
   Image depth;  // empty unless needed
   ViewFrame frame;
+  DisplayTransform transform;
 };
 
 Input readInput(const ImageDevelopArguments& arguments, const DevelopSettings& settings) {
@@ -128,6 +140,7 @@ Input readInput(const ImageDevelopArguments& arguments, const DevelopSettings& s
   Input input;
   input.frame = frameOf(arguments, file, settings);
   if (settings.lens) input.depth = depthOf(file, arguments.in);
+  input.transform = transformOf(arguments, file);
   input.image.metadata = keptMetadata(file.metadata, arguments.in, arguments.out);
   if (!settings.isEmpty()) input.image.metadata["developed"] = historyOf(arguments, file.metadata);
   input.otherLayers = layerNames(file);
@@ -140,17 +153,17 @@ Input readInput(const ImageDevelopArguments& arguments, const DevelopSettings& s
 void run(const ImageDevelopArguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in, arguments.falloff()});
-  const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
-  const DevelopSettings settings = settingsOf(arguments);
+  DevelopSettings settings = settingsOf(arguments);
   checkDisplay(arguments, settings);
   checkEffects(arguments, settings);
   Input input = readInput(arguments, settings);
+  if (settings.clip) *settings.clip *= std::exp2(-input.transform.exposure);
   Image& color = input.image.layers.front().image;
   print(inWords(develop(color, settings, &input.depth, input.frame)));
   if (!input.otherLayers.empty() && lowerExtension(arguments.out) == ".exr")
     note("{}: its colour alone is developed and written; without the layers {}", arguments.in,
          fmt::join(input.otherLayers, ", "));
-  writeKept(arguments.out, std::move(input.image), arguments.in, transform);
+  writeKept(arguments.out, std::move(input.image), arguments.in, input.transform);
 }
 
 }  // namespace
@@ -188,10 +201,7 @@ void addImageDevelopCommand(Command image) {
       "Vertical field of view in degrees, of the whole picture; without it that of the .exr");
   command.addFlag("--exact", a.exact,
                   "Use the exact kernels for all Gaussians: slow, the reference");
-  command.addOption("--exposure", a.exposure, "Stops: a .png shows radiance times 2^STOPS");
-  command.addWithDefault(
-      "--tonemap", a.tone,
-      fmt::format("Tone operator of a .png: {}", fmt::join(toneOperatorNames(), ", ")));
+  addDisplayOptions(command, a.display);
 }
 
 }  // namespace chromeball

@@ -154,8 +154,8 @@ std::string gainsInWords(const ImageRelightArguments& a, const Metadata& metadat
 
 // The attributes of a render that are no longer true once its light is another: of how bright the
 // sources are; of the sources, the paths from them, their samples and the file.
-constexpr const char* kOfNoise[] = {"noise", "noise_median", "noise_p95", "denoised_noise",
-                                    "clamp_light_removed"};
+constexpr const char* kOfNoise[] = {"exposure",  "noise",          "noise_median",
+                                    "noise_p95", "denoised_noise", "clamp_light_removed"};
 constexpr auto kOfLight = std::to_array<const char*>({"probe",
                                                       "probe-mapping",
                                                       "probe-found",

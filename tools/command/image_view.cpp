@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball image view IN OUT.png
-#include <cmath>
 #include <set>
 
 #include "base/error.h"
 #include "base/text.h"
 #include "commands.h"
+#include "display_options.h"
+#include "front/plan_render.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image_files.h"
@@ -17,8 +18,8 @@ namespace chromeball {
 namespace {
 
 struct ImageViewArguments {
-  std::string in, out, layer, tone = "none";
-  float exposure = 0;
+  std::string in, out, layer;
+  Settings display;
 };
 
 // Prints the color of each name.
@@ -38,8 +39,7 @@ void printLegend(const Image& ids, const std::map<int, std::string>& names) {
   if (present.size() > kMax) fmt::print("and {} more\n", present.size() - kMax);
 }
 
-Image viewOf(const std::string& path, const std::string& layer) {
-  const ImageFile file = openImageFile(path);
+Image viewOf(const ImageFile& file, const std::string& path, const std::string& layer) {
   std::optional<Image> image = findLayer(file, layer);
   if (!image) {
     const std::vector<std::string> names = layerNames(file);
@@ -54,12 +54,12 @@ Image viewOf(const std::string& path, const std::string& layer) {
 void run(const ImageViewArguments& arguments) {
   checkOutputFile(arguments.out, {".png"});
   checkDistinct({arguments.out}, {arguments.in});
-  const DisplayTransform transform{parseToneOperator(arguments.tone), arguments.exposure};
-  if (!std::isfinite(transform.exposure))
-    throwInput("--exposure: must be a finite number of stops");
-  const Image shown = arguments.layer.empty()
-                          ? colorAndAlphaOf(openImageFile(arguments.in), arguments.in)
-                          : viewOf(arguments.in, arguments.layer);
+  const bool isLayer = !arguments.layer.empty();
+  ImageFile file = openImageFile(arguments.in);
+  const DisplayTransform transform = isLayer ? planDisplay(arguments.display).transform
+                                             : displayOf(arguments.display, file, arguments.in);
+  const Image shown = isLayer ? viewOf(file, arguments.in, arguments.layer)
+                              : colorAndAlphaOf(std::move(file), arguments.in);
   print(writeImage(arguments.out, shown, transform));
 }
 
@@ -70,9 +70,7 @@ void addImageViewCommand(Command image) {
       image.addCommand<ImageViewArguments>("view", "Convert an image for display.", run);
   command.addRequired("IN", a.in, "The image");
   command.addRequired("OUT", a.out, "The image to write, .png");
-  command.addOption("--exposure", a.exposure, "Stops: radiance times 2^STOPS");
-  command.addWithDefault("--tonemap", a.tone,
-                         fmt::format("Tone operator: {}", fmt::join(toneOperatorNames(), ", ")));
+  addDisplayOptions(command, a.display);
   command.addOption(
       "--layer", a.layer,
       "A layer in place of the colour: albedo, normal (-1..1 as 0..1), depth (near is white), node "

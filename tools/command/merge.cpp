@@ -8,6 +8,8 @@
 #include "base/json_text.h"
 #include "base/text.h"
 #include "commands.h"
+#include "display_options.h"
+#include "front/plan_render.h"
 #include "image/io/output_file.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
@@ -23,6 +25,7 @@ namespace {
 
 struct MergeArguments {
   std::vector<std::string> parts, outputs;
+  Settings display;
   bool quiet = false;
 };
 
@@ -46,6 +49,13 @@ Metadata wholeMetadata(const PartSet& parts) {
   return metadata;
 }
 
+// The exposure is the parts' unless it was given; of a composite they have none.
+DisplayTransform displayOf(const MergeArguments& arguments, const Metadata& ofParts) {
+  auto [transform, choosesExposure] = planDisplay(arguments.display);
+  if (choosesExposure) transform.exposure = exposureIn(ofParts).value_or(0);
+  return transform;
+}
+
 void run(const MergeArguments& arguments) {
   for (const std::string& output : arguments.outputs) checkWritable(output);
   checkDistinct(arguments.outputs, arguments.parts);
@@ -57,9 +67,11 @@ void run(const MergeArguments& arguments) {
       whole.part.plan, whole.result, [&](double fraction) { bar.update(fraction); }, never);
   finished.image.metadata = sampleMetadata(finished, whole.result);
   finished.image.metadata.merge(wholeMetadata(parts));
+  const DisplayTransform transform = displayOf(arguments, finished.image.metadata);
+  finished.image.metadata["exposure"] = transform.exposure;
   Messages messages;
   for (const std::string& output : arguments.outputs) {
-    const Messages lost = writeImage(output, finished.image);
+    const Messages lost = writeImage(output, finished.image, transform);
     messages.insert(messages.end(), lost.begin(), lost.end());
   }
   addExcluded(whole.result, messages);
@@ -82,6 +94,7 @@ void addMergeCommand(Command app) {
       .addRequired("-o,--output", a.outputs,
                    "Image to write: .exr, .hdr, .pfm or .png; may be given repeatedly")
       .onePerName();
+  addDisplayOptions(command, a.display);
   command.addFlag("--quiet", a.quiet, "Show neither progress nor the noise");
 }
 

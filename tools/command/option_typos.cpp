@@ -39,6 +39,8 @@ constexpr auto kEquivalents = std::to_array<Equivalents>({
     {"--strategy NAME", " light-sampler lightsampler sampler sampling lightstrategy "},
     {"--tonemap NAME", " tone-mapping tonemapping tonemapper view-transform look "},
     {"--exposure STOPS", " ev stops film-exposure "},
+    {"--white-balance KELVIN", " wb kelvin temperature whitepoint white-point "},
+    {"--quality NAME", " preset quality-preset preview-quality draft "},
     {"--transparent", " alpha film-transparent no-background transparent-background "},
     {"--aov NAME,NAME", " aovs layers channels cryptomatte denoising-data "},
     {"--clamp X", " clamp-direct clamp-indirect firefly-clamp max-radiance maxcomponentvalue "},

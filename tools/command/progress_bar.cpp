@@ -29,38 +29,53 @@ std::string clockTime(double seconds) {
                   : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
+// "42%  0:10 elapsed, 0:14 remaining"
+std::string timesInWords(double fraction, double elapsed) {
+  const std::string times = fmt::format("{} elapsed", clockTime(elapsed));
+  if (std::isnan(fraction)) return times;
+  return fmt::format("{:3.0f}%  {}, {} remaining", 100 * fraction, times,
+                     fraction > 0 ? clockTime(elapsed * (1 - fraction) / fraction) : "?");
+}
+
 }  // namespace
 
-ProgressBar::ProgressBar(bool shown, std::string title)
-    : shown_(shown), title_(std::move(title) + "  ") {}
+ProgressBar::ProgressBar(ProgressStyle style, std::string title)
+    : style_(style), title_(std::move(title)) {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) writeError("\r\x1b[K");
 }
 
 void ProgressBar::update(double fraction) {
+  if (style_ == ProgressStyle::None) return;
   const Clock::time_point now = Clock::now();
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  if (style_ == ProgressStyle::Lines) {
+    if (lines_.isDue(fraction, elapsed))
+      note(fmt::format("{} {}{}", title_, timesInWords(fraction, elapsed),
+                       description_.empty() ? "" : ", " + description_));
+    return;
+  }
   const bool ends = fraction >= 1 && !ended_;  // which is drawn at once
-  if (!shown_ || (!ends && now - last_ < std::chrono::milliseconds(100))) return;
+  if (!ends && now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   ended_ = fraction >= 1;
   drawn_ = true;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  std::string times = fmt::format("{} elapsed", clockTime(elapsed));
-  if (!std::isnan(fraction))
-    times = fmt::format("{:3.0f}%  {}, {} remaining", 100 * fraction, times,
-                        fraction > 0 ? clockTime(elapsed * (1 - fraction) / fraction) : "?");
+  draw(fraction, timesInWords(fraction, elapsed));
+}
+
+void ProgressBar::draw(double fraction, const std::string& times) {
   const int columns = terminalColumns();
   const std::string described =
       description_.empty() ? times : fmt::format("{}, {}", times, description_);
-  const bool fits = int(title_.size() + described.size()) + kLeastBarWidth + 3 < columns;
+  const bool fits = int(title_.size() + described.size()) + kLeastBarWidth + 5 < columns;
   const std::string& text = fits ? described : times;
   if (std::isnan(fraction)) {
-    writeError(fmt::format("\r{}{}\x1b[K", title_, text));
+    writeError(fmt::format("\r{}  {}\x1b[K", title_, text));
   } else {
-    const int room = columns - int(title_.size() + text.size()) - 4;
+    const int room = columns - int(title_.size() + text.size()) - 6;
     const int width = std::clamp(room, kLeastBarWidth, kBarWidth), full = int(fraction * width);
-    writeError(fmt::format("\r{}[{}{}] {}\x1b[K", title_, std::string(full, '#'),
+    writeError(fmt::format("\r{}  [{}{}] {}\x1b[K", title_, std::string(full, '#'),
                            std::string(width - full, '.'), text));
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A progress bar on standard error: fraction done, time elapsed and time remaining, and a line of
-// the caller's about the work.
+// Progress on standard error, as a bar or as lines: fraction done, time elapsed and time remaining,
+// and a line of the caller's about the work.
 #pragma once
 
 #include <chrono>
@@ -9,12 +9,19 @@
 #include <string>
 #include <thread>
 
+#include "base/line_times.h"
+
 namespace chromeball {
 
-// Draws only if `shown`, at most ten times a second, and the end.
+// Lines come as LineTimes (base/line_times.h) says.
+enum class ProgressStyle { None, Bar, Lines };
+
+// A bar is drawn at most ten times a second, and at the end.
 class ProgressBar {
  public:
-  explicit ProgressBar(bool shown, std::string title = "rendering");
+  explicit ProgressBar(ProgressStyle style, std::string title = "rendering");
+  explicit ProgressBar(bool shown, std::string title = "rendering")
+      : ProgressBar(shown ? ProgressStyle::Bar : ProgressStyle::None, std::move(title)) {}
   ~ProgressBar();  // clears the line
 
   // `fraction` of the work done, in [0, 1]; NaN if it is unknown.
@@ -25,8 +32,12 @@ class ProgressBar {
   static bool isTerminal();  // whether standard error is one
 
  private:
+  void draw(double fraction, const std::string& times);
+
   using Clock = std::chrono::steady_clock;
-  bool shown_, drawn_ = false, ended_ = false;
+  ProgressStyle style_;
+  bool drawn_ = false, ended_ = false;
+  LineTimes lines_;
   std::string title_, description_;
   Clock::time_point start_ = Clock::now(), last_{};
 };

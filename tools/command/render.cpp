@@ -28,6 +28,7 @@
 #include "scene_options.h"
 #include "session/develop_image.h"
 #include "session/image_header.h"
+#include "session/meter_exposure.h"
 #include "session/render_loaded.h"
 #include "session/render_report.h"
 #include "viewers/viewers.h"
@@ -60,14 +61,14 @@ class PassReport {
 class ImageRender {
  public:
   // All references must outlive this. Throws InputError for a checkpoint that does not fit.
-  ImageRender(const LoadedScene& loaded, bool showsProgress, std::vector<Viewer*> viewers)
+  ImageRender(const LoadedScene& loaded, ProgressStyle style, std::vector<Viewer*> viewers)
       : loaded_(loaded),
         viewers_(std::move(viewers)),
-        bar_(showsProgress),
+        bar_(style),
         control_(
             loaded,
-            [this, showsProgress](const RenderState& state) {
-              if (showsProgress) bar_.describe(report_.of(state.result));
+            [this, style](const RenderState& state) {
+              if (style != ProgressStyle::None) bar_.describe(report_.of(state.result));
             },
             viewers_) {}
 
@@ -112,7 +113,9 @@ std::string guidedInWords(const RenderResult& render) {
                                                : "light samples and bounces");
 }
 
-void printOutcome(const RenderDescription& description, const FinishedRender& result, bool quiet) {
+// `exposure`: the one that was chosen; nullopt: none was.
+void printOutcome(const RenderDescription& description, const FinishedRender& result,
+                  std::optional<float> exposure, bool quiet) {
   const RenderResult& render = result.render;
   if (render.interrupted && render.samples == 0)
     throw Interrupted(fmt::format("interrupted before every pixel had a sample; saved as {}",
@@ -125,9 +128,9 @@ void printOutcome(const RenderDescription& description, const FinishedRender& re
                                       ? fmt::format("; --resume goes on from {}", *checkpoint)
                                       : ""));
   if (!quiet)
-    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samples,
+    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}{}: {}\n", render.samples,
                guidedInWords(render), result.seconds, inWords(result.noise),
-               inWords(result.denoised),
+               inWords(result.denoised), exposure ? ", " + chosenInWords(*exposure) : "",
                printable(fmt::format("{}", fmt::join(description.output.files, ", "))));
 }
 
@@ -163,20 +166,27 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
 
   Stopwatch watch;
   PhaseSeconds seconds;
-  const LoadedScene loaded = loadScene(description);
-  description = loaded.description;
+  LoadedScene loaded = loadScene(description);
   seconds.load = watch.lap();
   const PreparedScene prepared = prepareScene(loaded);
   seconds.build = prepared.buildSeconds;
   seconds.prepare = prepared.prepareSeconds;
-  prepareOutputs(description, loaded.files);
+  prepareOutputs(loaded.description, loaded.files);
+  catchInterrupts();
+  watch.lap();
+  std::optional<float> exposure;
+  if (needsExposure(loaded.description)) {
+    exposure = meteredExposure(loaded, prepared, interrupted);
+    loaded.description.output.expose(*exposure);
+  }
+  seconds.prepare += watch.lap();
+  description = loaded.description;
   std::optional<RenderPart> part = identified(loaded);
   FinishedRender result = [&] {
-    ImageRender render(loaded, options.showsProgress(), viewers.all());
+    ImageRender render(loaded, options.progress(), viewers.all());
     print(viewers.messages(), options.quiet());  // after the last error that input can cause
     print(outputMessages, options.quiet());
     print(loaded.messages, options.quiet());
-    catchInterrupts();
     return render.run(
         prepared, [](double fraction) { return fraction; }, interrupted);
   }();
@@ -186,7 +196,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   writeImages(description, loaded, result, seconds);
 
   print(resultMessages(loaded, prepared, result), options.quiet());
-  printOutcome(description, result, options.quiet());
+  printOutcome(description, result, exposure, options.quiet());
 }
 
 // Whether all files of a frame exist.
@@ -251,6 +261,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
   catchInterrupts();
   FrameScene scene;
   std::set<std::string> printed;
+  std::optional<float> exposure;  // of all frames
   size_t kept = 0;
   for (size_t i = 0; i < frames.size() && !interrupted; ++i) {
     const SequenceFrame frame = sequence.frame(frames[i]);
@@ -261,6 +272,14 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
       continue;
     }
     Stopwatch watch;
+    if (needsExposure(description)) {
+      if (!exposure) {
+        const SequenceFrame first = sequence.frame(sequence.first());
+        scene.show(planRender(first.scene, first.given));
+        exposure = meteredExposure(scene.loaded(), scene.prepared(), interrupted);
+      }
+      description.output.expose(*exposure);
+    }
     scene.show(description);
     description = scene.loaded().description;
     const PhaseSeconds seconds{.load = watch.lap()};
@@ -268,7 +287,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     std::optional<RenderPart> part = identified(scene.loaded());
     const double before = double(i - kept), count = double(frames.size() - kept);
     FinishedRender result = [&] {
-      ImageRender render(scene.loaded(), options.showsProgress(), viewers.all());
+      ImageRender render(scene.loaded(), options.progress(), viewers.all());
       printNew(viewers.messages(), printed, options.quiet());
       printNew(sequence.messages(), printed, options.quiet());
       printNew(outputMessages, printed, options.quiet());
@@ -282,7 +301,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     writeImages(description, scene.loaded(), result, seconds);
     printNew(resultMessages(scene.loaded(), scene.prepared(), result), printed, options.quiet());
     if (!options.quiet()) fmt::print("frame {}: ", frame.number);
-    printOutcome(description, result, options.quiet());
+    printOutcome(description, result, exposure, options.quiet());
   }
   if (interrupted)
     throw Interrupted("interrupted; the same command goes on with the frames that are missing");

@@ -6,7 +6,6 @@
 
 #include "front/settings.h"
 #include "front/settings_page.h"
-#include "progress_bar.h"
 #include "session/load_scene.h"
 #include "session/memory_estimate.h"
 
@@ -74,33 +73,6 @@ constexpr std::string_view kOfPixels[] = {
 
 bool isList(const Setting& setting) {
   return setting.type == SettingType::Choices || setting.type == SettingType::Files;
-}
-
-void addSettingOption(Command app, const Setting& setting, Settings& settings) {
-  const std::string name = "--" + setting.option;
-  const std::string names = setting.letter ? fmt::format("-{},{}", setting.letter, name) : name;
-  const auto set = [&setting, &settings, name](const std::vector<std::string>& words) {
-    settings.set(setting.name(), parseSetting(setting, words, name), name);
-  };
-  const std::string help = helpOf(setting);
-  if (setting.type == SettingType::Flag) {
-    app.addFlag(
-           names, [set] { set({"true"}); }, help)
-        .group(titleOf(setting));
-    return;
-  }
-  if (!setting.bare.empty()) {
-    const auto setOrBare = [&setting, set](const std::string& word) {
-      set({word == "true" ? std::string(setting.bare) : word});
-    };
-    app.addFlagWithValue(names, setOrBare, help)
-        .typeName(fmt::format("[={}]", setting.argument))
-        .group(titleOf(setting));
-    return;
-  }
-  Option option = app.addParsedOption(names, set, help);
-  option.typeName(std::string(setting.argument)).group(titleOf(setting));
-  if (isList(setting)) option.takesAll();
 }
 
 using Names = std::span<const std::string_view>;
@@ -172,8 +144,10 @@ bool isOptionOf(SceneCommand command, const Setting& setting) {
   }
 }
 
-bool SceneOptions::showsProgress() const {
-  return settings.get<bool>("progress") || (ProgressBar::isTerminal() && !quiet());
+ProgressStyle SceneOptions::progress() const {
+  if (settings.get<bool>("progress")) return ProgressStyle::Bar;
+  if (quiet()) return ProgressStyle::None;
+  return ProgressBar::isTerminal() ? ProgressStyle::Bar : ProgressStyle::Lines;
 }
 
 void addSceneOptions(Command app, SceneOptions& options, SceneCommand command) {
@@ -183,6 +157,33 @@ void addSceneOptions(Command app, SceneOptions& options, SceneCommand command) {
     if (!setting.option.empty() && isOptionOf(command, setting))
       addSettingOption(app, setting, options.settings);
   app.widerNames();
+}
+
+void addSettingOption(Command app, const Setting& setting, Settings& settings) {
+  const std::string name = "--" + setting.option;
+  const std::string names = setting.letter ? fmt::format("-{},{}", setting.letter, name) : name;
+  const auto set = [&setting, &settings, name](const std::vector<std::string>& words) {
+    settings.set(setting.name(), parseSetting(setting, words, name), name);
+  };
+  const std::string help = helpOf(setting);
+  if (setting.type == SettingType::Flag) {  // --denoise=false: not what --quality stands for
+    app.addFlagWithValue(
+           names, [set](const std::string& word) { set({word}); }, help)
+        .group(titleOf(setting));
+    return;
+  }
+  if (!setting.bare.empty()) {
+    const auto setOrBare = [&setting, set](const std::string& word) {
+      set({word == "true" ? std::string(setting.bare) : word});
+    };
+    app.addFlagWithValue(names, setOrBare, help)
+        .typeName(fmt::format("[={}]", setting.argument))
+        .group(titleOf(setting));
+    return;
+  }
+  Option option = app.addParsedOption(names, set, help);
+  option.typeName(std::string(setting.argument)).group(titleOf(setting));
+  if (isList(setting)) option.takesAll();
 }
 
 std::string optionText(const Setting& setting, const std::string& value) {

@@ -8,6 +8,7 @@
 #include "command.h"
 #include "front/scene_file.h"
 #include "front/settings.h"
+#include "progress_bar.h"
 
 namespace chromeball {
 
@@ -18,7 +19,7 @@ struct SceneOptions {
   Settings settings;  // from the command line; locations are option names ("--size")
 
   bool quiet() const { return settings.get<bool>("quiet"); }
-  bool showsProgress() const;
+  ProgressStyle progress() const;
 };
 
 // The command that the options are for: compare varies some settings itself, and does not need
@@ -29,6 +30,9 @@ bool isOptionOf(SceneCommand command, const Setting& setting);
 
 // `options` is filled when the command line is parsed; it must outlive `app`.
 void addSceneOptions(Command app, SceneOptions& options, SceneCommand command);
+
+// The same for one setting that has an option.
+void addSettingOption(Command app, const Setting& setting, Settings& settings);
 
 // "--probe-scale R[,G,B]", or with a value "--probe-scale 2".
 std::string optionText(const Setting& setting, const std::string& value = "");

@@ -12,11 +12,11 @@ _chromeball() {
       words='render merge compare bake basis relight probe image camera lights lights-error info doctor'
       options='--help --version' ;;
     'render')
-      options='--help --animation --animation-time --variant --camera --camera-file --shutter --shutter-steps --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --integrator --ao --reflection-occlusion --ao-distance --bent --irradiance-cache --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --orbit-step --allow-external --output --aov --develop --tonemap --exposure --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --probe-sequence --write-every --preview --display --cache --checkpoint --checkpoint-every --resume --progress --quiet' ;;
+      options='--help --animation --animation-time --variant --camera --camera-file --shutter --shutter-steps --probe --probe-mapping --probe-rotation --probe-scale --strategy --mis --sun-angle --light-from --show-lights --lights --light-units --size --quality --samples --time --noise --adaptive --guide --regularize --glass-shadows --denoise --integrator --ao --reflection-occlusion --ao-distance --bent --irradiance-cache --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --clamp --transparent --shadow-catcher --two-pass --crop --shard --orbit --orbit-step --allow-external --output --aov --develop --exposure --tonemap --white-balance --memory --texture-memory --threads --stats --frames --frame --fps --overwrite --seed-per-frame --probe-sequence --write-every --preview --display --cache --checkpoint --checkpoint-every --resume --progress --quiet' ;;
     'merge')
-      options='--help --output --quiet' ;;
+      options='--help --output --quiet --exposure --tonemap --white-balance' ;;
     'compare')
-      options='--help --strategies --integrators --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --camera-file --shutter --shutter-steps --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --allow-external --tonemap --exposure --memory --texture-memory --threads --progress --quiet' ;;
+      options='--help --strategies --integrators --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --animation --animation-time --variant --camera --camera-file --shutter --shutter-steps --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --single-sided --seed --allow-external --exposure --tonemap --memory --texture-memory --threads --progress --quiet' ;;
     'bake')
       options='--help --output --what --to --size --texel --padding --scale --denoise --no-denoise --keep-materials --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --sun-angle --light-from --light-units --samples --ao-distance --max-depth --seed --allow-external --memory --texture-memory --threads --progress --quiet' ;;
     'basis')
@@ -68,7 +68,7 @@ _chromeball() {
     'image denoise')
       options='--help --quiet' ;;
     'image develop')
-      options='--help --clip --depth-blur --motion --bloom --glare --vignette --fov --exact --exposure --tonemap' ;;
+      options='--help --clip --depth-blur --motion --bloom --glare --vignette --fov --exact --exposure --tonemap --white-balance' ;;
     'image divide')
       options='--help --output' ;;
     'image error')
@@ -78,7 +78,7 @@ _chromeball() {
     'image relight')
       options='--help --gain --probe --bent --suns --add --rotation --scale --mapping --output --exposure --tonemap' ;;
     'image view')
-      options='--help --exposure --tonemap --layer' ;;
+      options='--help --layer --exposure --tonemap --white-balance' ;;
     'camera')
       words='solve'
       options='--help' ;;

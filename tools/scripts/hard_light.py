@@ -181,7 +181,7 @@ def error(image, reference):
 
 def picture(image):
     path = image.with_suffix(".png")
-    run(CHROMEBALL, "image", "view", image, path, "--tonemap", "aces")
+    run(CHROMEBALL, "image", "view", image, path, "--tonemap", "aces", "--exposure", 0)
     return path
 
 

@@ -132,7 +132,7 @@ void appendPngBytes(png_structp png, png_bytep data, size_t count) {
 }
 
 bool writePngImage(png_structp png, png_infop info, int width, int height, int channels,
-                   const uint8_t* bytes) {
+                   const uint8_t* bytes, png_textp text) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_IHDR(png, info, png_uint_32(width), png_uint_32(height), 8,
                channels == 1   ? PNG_COLOR_TYPE_GRAY
@@ -141,6 +141,7 @@ bool writePngImage(png_structp png, png_infop info, int width, int height, int c
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_compression_level(png, 6);
   png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_ABSOLUTE);
+  if (text) png_set_text(png, info, text, 1);
   png_write_info(png, info);
   for (int y = 0; y < height; ++y)
     png_write_row(png, bytes + size_t(y) * size_t(width) * size_t(channels));
@@ -164,7 +165,9 @@ std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& trans
       if (hasAlpha) *to++ = byte(alpha);
     }
   });
-  return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes);
+  const std::string exposure =
+      transform.exposure == 0 ? "" : fmt::format("{:g}", transform.exposure);
+  return encodePng(color.width, color.height, hasAlpha ? 4 : 3, bytes, exposure);
 }
 
 void checkImageName(const fs::path& path) {
@@ -214,8 +217,8 @@ Messages lostLight(const std::filesystem::path& path, const Image& color) {
   return messages;
 }
 
-std::vector<uint8_t> encodePng(int width, int height, int channels,
-                               std::span<const uint8_t> bytes) {
+std::vector<uint8_t> encodePng(int width, int height, int channels, std::span<const uint8_t> bytes,
+                               std::string exposure) {
   std::vector<uint8_t> encoded;
   PngOutput output{&encoded, {}};
   png_structp png =
@@ -225,7 +228,12 @@ std::vector<uint8_t> encodePng(int width, int height, int channels,
   if (info) {
     png_set_write_fn(png, &output, appendPngBytes, nullptr);
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    written = writePngImage(png, info, width, height, channels, bytes.data());
+    char key[] = "exposure";
+    png_text text{};
+    text.compression = PNG_TEXT_COMPRESSION_NONE;
+    text.key = key, text.text = exposure.data(), text.text_length = exposure.size();
+    written = writePngImage(png, info, width, height, channels, bytes.data(),
+                            exposure.empty() ? nullptr : &text);
   }
   png_destroy_write_struct(&png, &info);
   if (!written) throwRun("cannot encode a PNG: {}", output.error);

@@ -48,7 +48,8 @@ void checkWritable(const std::filesystem::path& path);
 Messages writeImage(const std::filesystem::path& path, const OutputImage& output,
                     const DisplayTransform& transform = {});
 
-// The bytes of that .png. An image of one channel is grey.
+// The bytes of that .png. An image of one channel is grey. An exposure other than 0 is in the text
+// `exposure`.
 std::vector<uint8_t> encodePng(const Image& color, const DisplayTransform& transform);
 
 // Writes only the colour.
@@ -69,7 +70,8 @@ Messages lostLight(const std::filesystem::path& path, const Image& color);
 // Encodes a PNG in memory: for images embedded in documents, and for files.
 
 // `bytes` are rows of interleaved 8-bit sRGB channels: one (grey), three, or four with unassociated
-// alpha. The encoding is lossless.
-std::vector<uint8_t> encodePng(int width, int height, int channels, std::span<const uint8_t> bytes);
+// alpha. The encoding is lossless. `exposure`: a text with this name; empty: none.
+std::vector<uint8_t> encodePng(int width, int height, int channels, std::span<const uint8_t> bytes,
+                               std::string exposure = "");
 
 }  // namespace chromeball

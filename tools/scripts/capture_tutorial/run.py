@@ -38,7 +38,8 @@ class Run:
         return self.scratch / out
 
     def picture(self, image, name, *options):
-        """An image of the program as a picture of the page, a .jpg."""
-        self("image", "view", image, "picture.png", *options)
+        """An image of the program as a picture of the page, a .jpg; radiance 1 is white."""
+        exposure = () if "--exposure" in options else ("--exposure", 0)
+        self("image", "view", image, "picture.png", *exposure, *options)
         jpeg.write(self.pictures / name, pixels.read_png(self.scratch / "picture.png"))
         return name

@@ -80,8 +80,9 @@ class Run:
         return self.json("image", "error", image, reference, *more)
 
     def picture(self, image, name, *options):
-        """An image of the program as a picture of the page."""
-        self("image", "view", image, self.pictures / name, *options)
+        """An image of the program as a picture of the page; radiance 1 is white."""
+        exposure = () if "--exposure" in options else ("--exposure", 0)
+        self("image", "view", image, self.pictures / name, *exposure, *options)
         return name
 
 
