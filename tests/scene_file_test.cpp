@@ -62,7 +62,8 @@ TEST_F(SceneFileTest, FilesThatAreNoneAreNamed) {
   ASSERT_EQ(mkfifo((root_ / "pipe").c_str(), 0600), 0);
   for (const char* entry : {"[[light]]\nfile = ", "[probe]\nfile = ", "[camera]\nfile = "}) {
     expectError(std::string(entry) + "'../pipe'", 3, {"`file`: ", "pipe: not a regular file"});
-    expectError(std::string(entry) + "'..'", 3, {"not a regular file"});
+    if (!std::string(entry).starts_with("[probe]"))  // a folder may hold the faces of a cube
+      expectError(std::string(entry) + "'..'", 3, {"not a regular file"});
     expectError(std::string(entry) + "'none'", 3, {"none: no such file", "relative to the scene"});
   }
 }
@@ -339,7 +340,6 @@ TEST_F(SceneFileTest, BadModelsAreRejected) {
 
 TEST_F(SceneFileTest, MissingFilesAreNamedWithTheirLine) {
   expectError("[probe]\nfile = '../moon.exr'\n", 3, {"`file`", "moon.exr"});
-  expectError("[probe]\nfile = '..'\n", 3, {"`file`"});    // a folder is not a probe
   EXPECT_THROW(read("model = 'ball.glb'\n"), InputError);  // not relative to the working directory
 }
 
