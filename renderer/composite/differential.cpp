@@ -85,7 +85,7 @@ Sample DifferentialIntegrator::sample(const CameraSample& camera, PathContext& c
   for (const Rgb& radiance : {withObjects, without})
     if (const auto defect = defectOf(radiance, false)) return {radiance, defect};
 
-  std::vector<Rgb>& layers = context.layers;
+  const std::span<Rgb> layers = camera.layers;
   if (s.objectFirst) {
     const Rgb seen = context.clamp(withObjects);
     layers[DifferentialFilm::kCoverage] = Rgb(1);

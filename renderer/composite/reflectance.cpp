@@ -49,13 +49,13 @@ class VisibilityIntegrator : public Integrator {
     const Surface surface =
         surfaceAt(scene, instance, hit->triangle, hit->barycentric, -direction, 0, state.ray.time);
     const float distance = glm::length(surface.position - camera.ray.origin);
-    context.layers[kDepth] = Rgb(camera_.depth(direction, distance));
-    context.layers[kCoverage] = Rgb(1);
-    context.layers[kBaseColor] = materialAt(scene, surface).baseColor;
+    camera.layers[kDepth] = Rgb(camera_.depth(direction, distance));
+    camera.layers[kCoverage] = Rgb(1);
+    camera.layers[kBaseColor] = materialAt(scene, surface).baseColor;
     if (surface.material->unlit)
-      context.layers[kUnlit] = Rgb(1);
+      camera.layers[kUnlit] = Rgb(1);
     else if (surface.material->emits())
-      context.layers[kEmission] = emittedRadiance(scene, instance, surface, -direction);
+      camera.layers[kEmission] = emittedRadiance(scene, instance, surface, -direction);
     return Rgb(0);
   }
 

@@ -23,7 +23,7 @@ class OneWorld : public Integrator {
     PathState start = camera.path();
     const auto hit = worlds_.whole.skipHiddenBacks(start, camera.hit, context);
     const bool objectFirst = hit && worlds_.isObject(*hit);
-    std::vector<Rgb>& layers = context.layers;
+    const std::span<Rgb> layers = camera.layers;
     if (withObjects_) {
       const Rgb found = worlds_.whole.radiance(start, hit, context);
       layers[DifferentialFilm::kCoverage] = Rgb(objectFirst);

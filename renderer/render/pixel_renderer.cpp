@@ -33,6 +33,7 @@ PixelRenderer::PixelRenderer(const Integrator& integrator, const World& world, c
       cameraRays_(camera, float(settings.width) / float(settings.height)),
       drawsTimes_(camera.motion || world.scene.moves),
       sequence_(settings),
+      layerCount_(integrator.layers().size()),
       table_(sequence_.tableSize(),
              dimension::tabulated(std::min(settings.maxDepth, dimension::kTabulatedVertices) + 1),
              settings.seed),
@@ -41,10 +42,10 @@ PixelRenderer::PixelRenderer(const Integrator& integrator, const World& world, c
 }
 
 PixelWorker PixelRenderer::makeWorker() const {
-  return {{.sampler = PixelSampler(table_, settings_.seed),
-           .clamp = Clamp(settings_.clamp),
-           .layers = std::vector<Rgb>(integrator_.layers().size())},
-          {}};
+  return {
+      .context = {.sampler = PixelSampler(table_, settings_.seed), .clamp = Clamp(settings_.clamp)},
+      .invalid = {},
+      .layers = std::vector<Rgb>(PixelWorker::kMaxSamples * layerCount_)};
 }
 
 double PixelRenderer::fractionOfHits() const {
@@ -100,7 +101,8 @@ void PixelRenderer::addBlock(PixelWorker& worker, const Beam& beam) const {
                          .index = i,
                          .beam = beam,
                          .widening = wideningOf(block, i),
-                         .first = wantsFirst ? &worker.firsts[k] : nullptr};
+                         .first = wantsFirst ? &worker.firsts[k] : nullptr,
+                         .layers = std::span(worker.layers).subspan(k * layerCount_, layerCount_)};
   }
 }
 
@@ -164,17 +166,10 @@ void PixelRenderer::traceSamples(PixelWorker& worker) const {
   const auto cameras = std::span(worker.cameras).first(worker.sampleCount);
   std::array<Sample, PixelWorker::kMaxSamples> samples;
   traceCameraRays(worker.context.sampler, cameras);
-  std::vector<Rgb>& layers = worker.context.layers;
-  const bool hasLayers = !layers.empty();  // of one sample at a time
-  if (!hasLayers) integrator_.sampleMany(cameras, worker.context, samples);
-  for (size_t k = 0; k < cameras.size(); ++k) {
-    if (hasLayers) {
-      std::fill(layers.begin(), layers.end(), Rgb(0));
-      cameras[k].start(worker.context.sampler);
-      samples[k] = integrator_.sample(cameras[k], worker.context);
-    }
+  std::ranges::fill(worker.layers, Rgb(0));
+  integrator_.sampleMany(cameras, worker.context, samples);
+  for (size_t k = 0; k < cameras.size(); ++k)
     add(worker, worker.blocks[worker.blockOf[k]], cameras[k], samples[k]);
-  }
   worker.sampleCount = 0;
 }
 
@@ -186,7 +181,7 @@ void PixelRenderer::add(PixelWorker& worker, SampleBlock& block, const CameraSam
     result_.aovs.add(x, y, *sample.defect);
   } else {
     block.sums.add(sample.radiance);
-    if (!result_.layers.empty()) result_.layers.add(x, y, half, worker.context.layers);
+    if (!result_.layers.empty()) result_.layers.add(x, y, half, camera.layers);
   }
   if (camera.first) {
     camera.first->depth = raysAt(camera.ray.time).depth(camera.ray.direction, camera.first->depth);

@@ -82,6 +82,7 @@ struct PixelWorker {
   size_t sampleCount = 0, blockCount = 0;
   std::array<CameraSample, kMaxSamples> cameras = {};
   std::array<FirstHit, kMaxSamples> firsts = {};
+  std::vector<Rgb> layers;  // of all samples
   std::array<uint32_t, kMaxSamples> blockOf = {};
   std::array<SampleBlock, kMaxSamples + 1> blocks = {};
 };
@@ -122,6 +123,7 @@ class PixelRenderer {
   std::optional<MovingCamera> moving_;  // camera
   const bool drawsTimes_;               // something moves while the shutter is open
   SampleSequence sequence_;
+  const size_t layerCount_;
   SobolTable table_;
   RenderResult& result_;
 };

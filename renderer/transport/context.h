@@ -104,7 +104,6 @@ struct PathContext {
   RayCounts counts;
   DepthCut depthCut;
   Clamp clamp;                      // integrators apply it to the radiance that they return
-  std::vector<Rgb> layers;          // of the current sample (Integrator::layers)
   GroupSums* groups = nullptr;      // output, of light_groups.h; null: not wanted
   std::vector<Rgb> lightRadiances;  // scratch of `groups`; keeps its capacity
   // Set if the transmittance of a shadow ray differs between PathSettings::visible and ::compared.

@@ -109,16 +109,20 @@ LightRecord DirectLight::record(const LightPoint& point, const LightSample& ligh
           .bsdfPdf = bsdf.pdf};
 }
 
-// `scattered`: the radiance that reaches the viewer per irradiance of the sample. `source`: as for
+// `weight`: the radiance at the camera per irradiance of the sample. `source`: as for
 // LightGroups::rangeOf().
-void DirectLight::addToGroups(std::optional<size_t> source, const Vertex& vertex,
-                              const DirectionSample& light, const Rgb& scattered,
+void DirectLight::addToGroups(std::optional<size_t> source, const LightPoint& point,
+                              const DirectionSample& light, const Rgb& weight,
                               PathContext& context) const {
-  const Rgb weight = vertex.throughput * scattered;
   if (light.isDelta || light.end.instance != LightEnd::kNone)
     return context.groups->addSample(source, light, weight * light.irradiance);
   const LightSource& lighting = source ? *world_.sources.all[*source] : lighting_;
-  context.groups->addEscaped(lighting, source, vertex.point, light.wi, weight / light.pdf);
+  context.groups->addEscaped(lighting, source, point, light.wi, weight / light.pdf);
+}
+
+void DirectLight::addToGroups(const DeferredLight& light, const Rgb& passed,
+                              PathContext& context) const {
+  addToGroups({}, light.point, light.sample, light.scattered * passed, context);
 }
 
 Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
@@ -132,7 +136,7 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
     const Rgb scattered = weighted(light.direction, bsdf) * passed;
     sum += scattered * light.direction.irradiance;
     if (context.groups) [[unlikely]]
-      addToGroups({}, vertex, light.direction, scattered, context);
+      addToGroups({}, vertex.point, light.direction, vertex.throughput * scattered, context);
     if (context.records && !light.direction.isDelta)
       context.addRecord(record(vertex.point, light, bsdf), passed);
   };
@@ -163,16 +167,18 @@ void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLig
   if (isBlack(bsdf.fCos)) return;
   light.hasShadowRay = true;
   light.shadowRay = rayFrom(vertex.surface, chosen.direction);
+  if (guided || context.groups) light.point = vertex.point;
   if (guided) {
     light.region = vertex.region;
     light.treePdf = chosen.pdf;
-    light.point = vertex.point;
     light.bsdf = bsdf;
     light.throughput = throughput;
     return;
   }
   const LightSample sample = ofStrategy(vertex, light.sample);
-  light.radiance = throughput * weighted(sample.direction, bsdf) * sample.direction.irradiance;
+  light.sample = sample.direction;
+  light.scattered = throughput * weighted(sample.direction, bsdf);
+  light.radiance = light.scattered * sample.direction.irradiance;
   if (context.records) light.record = record(vertex.point, sample, bsdf);
 }
 
@@ -180,8 +186,9 @@ void DirectLight::complete(const LightSource::Escaped& found, DeferredLight& lig
                            const PathContext& context) const {
   const LightSample sample =
       ofGuide(*light.region, {light.shadowRay.direction, light.treePdf}, found);
-  light.radiance =
-      light.throughput * weighted(sample.direction, light.bsdf) * sample.direction.irradiance;
+  light.sample = sample.direction;
+  light.scattered = light.throughput * weighted(sample.direction, light.bsdf);
+  light.radiance = light.scattered * sample.direction.irradiance;
   if (context.records) light.record = record(light.point, sample, light.bsdf);
 }
 
@@ -206,7 +213,7 @@ Rgb DirectLight::ofScene(size_t source, const Vertex& vertex, PathContext& conte
     const Rgb scattered = (weighted(light, broad) + weighted(light, narrow)) * passed;
     sum += scattered * light.irradiance;
     if (context.groups) [[unlikely]]
-      addToGroups(source, vertex, light, scattered, context);
+      addToGroups(source, vertex.point, light, vertex.throughput * scattered, context);
   }
   return sum;
 }

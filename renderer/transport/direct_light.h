@@ -29,11 +29,13 @@ struct Vertex {
 
 // Light from the probe at a vertex, for paths that are traced together (integrator.h).
 struct DeferredLight {
-  DirectionSample sample{};  // input: the strategy's light sample; pdf 0: none
+  DirectionSample
+      sample{};  // input: the strategy's light sample; pdf 0: none. Output: the one taken
   bool hasShadowRay = false;
   Ray shadowRay{};       // output
   Rgb radiance{0};       // at the camera if nothing blocks the shadow ray
   LightRecord record{};  // likewise; only if the context wants records
+  Rgb scattered{0};      // `radiance` per irradiance of `sample`
 
   // Set if the guide chose the direction; complete() then calculates the radiance.
   const GuideRegion* region = nullptr;
@@ -63,6 +65,8 @@ class DirectLight {
   // LightSource::escaped() returns for light.point and the direction of the shadow ray.
   void complete(const LightSource::Escaped& found, DeferredLight& light,
                 const PathContext& context) const;
+  // Adds what of it passes the shadow ray to the path's groups.
+  void addToGroups(const DeferredLight& light, const Rgb& passed, PathContext& context) const;
   // Light from one of World::sources, which lights narrow lobes too.
   Rgb ofScene(size_t source, const Vertex& vertex, PathContext& context) const;
 
@@ -79,8 +83,8 @@ class DirectLight {
   static LightSample ofGuide(const GuideRegion& region, const DirectionTree::Sample& sample,
                              const LightSource::Escaped& found);
   Rgb weighted(const DirectionSample& light, const BsdfValue& bsdf) const;
-  void addToGroups(std::optional<size_t> source, const Vertex& vertex, const DirectionSample& light,
-                   const Rgb& scattered, PathContext& context) const;
+  void addToGroups(std::optional<size_t> source, const LightPoint& point,
+                   const DirectionSample& light, const Rgb& weight, PathContext& context) const;
   static LightRecord record(const LightPoint& point, const LightSample& light,
                             const BsdfValue& bsdf);
 

@@ -4,14 +4,13 @@
 #include <cassert>
 #include <new>
 
+#include "transport/light_groups.h"
+
 namespace chromeball {
 
 void PathIntegrator::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
                                 std::span<Sample> samples) const {
-  thread_local PathBatch batch;
-  batch.clear();
-  for (const CameraSample& camera : cameras) batch.add(camera);
-  batch.trace(tracer_, context);
+  const PathBatch& batch = PathBatch::traced(cameras, tracer_, context);
   for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(batch.radiance(i));
 }
 
@@ -24,6 +23,15 @@ struct PathBatch::Task {
   const Accel& accel() const { return tracer.world().accel; }
   RayMask visible() const { return tracer.settings().visible; }
 };
+
+const PathBatch& PathBatch::traced(std::span<const CameraSample> cameras, const PathTracer& tracer,
+                                   PathContext& context) {
+  thread_local PathBatch batch;
+  batch.clear();
+  for (const CameraSample& camera : cameras) batch.add(camera);
+  batch.trace(tracer, context);
+  return batch;
+}
 
 void PathBatch::add(const CameraSample& camera) {
   assert(count_ < kMaxPaths);
@@ -52,10 +60,17 @@ void PathBatch::trace(const PathTracer& tracer, PathContext& context) {
   }
 }
 
-// The sampler continues with the numbers for the path's next vertex.
+// The sampler continues with the numbers for the path's next vertex, and light groups with its
+// sums.
 void PathBatch::select(uint32_t path, Task& task) {
   cameras_[path]->start(task.context.sampler);
   task.context.sampler.startVertex(paths_[path].depth);
+  selectGroups(path, task);
+}
+
+void PathBatch::selectGroups(uint32_t path, Task& task) {
+  if (task.context.groups) [[unlikely]]
+    task.context.groups->select(path, cameras_[path]->layers);
 }
 
 void PathBatch::endEscaped(Task& task) {
@@ -77,11 +92,15 @@ void PathBatch::endEscaped(Task& task) {
   }
   active_.size = remaining;
   task.lighting().backgroundMany(sights_.all(), backgrounds_);
-  for (size_t k = 0; k < seen.size; ++k)
+  for (size_t k = 0; k < seen.size; ++k) {
+    selectGroups(seen.items[k], task);
     task.tracer.addBackground(paths_[seen.items[k]], backgrounds_[k], task.context);
+  }
   task.lighting().escapedMany(escapes_.all(), escaped_);
-  for (size_t k = 0; k < escaped.size; ++k)
+  for (size_t k = 0; k < escaped.size; ++k) {
+    selectGroups(escaped.items[k], task);
     task.tracer.addEscaped(paths_[escaped.items[k]], escaped_[k], task.context);
+  }
 }
 
 void PathBatch::drawLightSamples(Task& task) {
@@ -147,6 +166,10 @@ void PathBatch::traceShadowRays(Task& task) {
     if (!isBlack(transmittances_[k])) {
       const DeferredLight& light = lights_[lit.items[k]];
       paths_[lit.items[k]].radiance += light.radiance * transmittances_[k];
+      if (task.context.groups) [[unlikely]] {
+        selectGroups(lit.items[k], task);
+        task.tracer.direct().addToGroups(light, transmittances_[k], task.context);
+      }
       if (task.context.records) task.context.addRecord(light.record, transmittances_[k]);
     }
 }

@@ -25,6 +25,7 @@ struct CameraSample {
   Beam beam{};                // the ray's footprint, for texture filtering
   float widening = 0;         // as in PathState
   FirstHit* first = nullptr;  // output; null: not wanted
+  std::span<Rgb> layers{};    // output: one value per layer of Integrator::layers(), initially 0
 
   void start(PixelSampler& sampler) const { sampler.startSample(*pixel, index); }
   PathState path() const {
@@ -46,11 +47,11 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  // One sample, for which the sampler has been started. Writes context.layers: one value per layer
-  // of layers(), initially 0. Called concurrently, with one context per thread.
+  // One sample, for which the sampler has been started. Called concurrently, with one context per
+  // thread.
   virtual Sample sample(const CameraSample& camera, PathContext& context) const = 0;
 
-  // The same for several samples, of any pixels. Only for integrators without layers.
+  // The same for several samples, of any pixels.
   virtual void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
                           std::span<Sample> samples) const {
     for (size_t i = 0; i < cameras.size(); ++i) {
@@ -86,13 +87,16 @@ class PathIntegrator : public Integrator {
 };
 
 // Paths that are traced together, a vertex of each at a time: their rays form packets, and their
-// reads from the probe's tables and the meshes overlap.
-
-// Gives the same estimates as PathTracer::radiance(). A batch is reused for the next paths, since
-// clearing its arrays would take a noticeable part of the time.
+// reads from the probe's tables and the meshes overlap. Gives the same estimates as
+// PathTracer::radiance(). A batch is reused for the next paths, since clearing its arrays would
+// take a noticeable part of the time.
 class PathBatch {
  public:
   static constexpr size_t kMaxPaths = LightSource::kMaxMany;
+
+  // Traces the paths of camera rays, in a batch of this thread: valid until the next call.
+  static const PathBatch& traced(std::span<const CameraSample> cameras, const PathTracer& tracer,
+                                 PathContext& context);
 
   void add(const CameraSample& camera);  // must outlive the tracing
 
@@ -117,6 +121,7 @@ class PathBatch {
 
   struct Task;
   void select(uint32_t path, Task& task);
+  void selectGroups(uint32_t path, Task& task);
   void endEscaped(Task& task);
   void drawLightSamples(Task& task);
   void shade(Task& task);

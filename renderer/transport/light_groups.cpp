@@ -56,29 +56,37 @@ void GroupSums::add(std::optional<size_t> source, const Rgb& throughput, const S
 
 void GroupSums::addEscaped(const LightSource& light, std::optional<size_t> source,
                            const LightPoint& point, const vec3& wi, const Rgb& throughput) {
-  if (isDirected(source)) return directions_->push_back({wi, throughput});
+  if (isDirected(source)) return directions_[path_].push_back({wi, throughput});
   add(source, throughput,
       [&](std::span<Rgb> radiances) { light.splitEscaped(point, wi, radiances); });
 }
 
 void GroupSums::addBackground(const LightSource& light, std::optional<size_t> source,
                               const vec3& origin, const vec3& wi, const Rgb& throughput) {
-  if (isDirected(source)) return directions_->push_back({wi, throughput});
+  if (isDirected(source)) return directions_[path_].push_back({wi, throughput});
   add(source, throughput,
       [&](std::span<Rgb> radiances) { light.splitBackground(origin, wi, radiances); });
 }
 
 Sample GroupIntegrator::sample(const CameraSample& camera, PathContext& context) const {
-  GroupSums sums(groups_, context.layers, context.lightRadiances);
+  Sample found;
+  sampleMany({&camera, 1}, context, {&found, 1});
+  return found;
+}
+
+void GroupIntegrator::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+                                 std::span<Sample> samples) const {
+  GroupSums sums(groups_, context.lightRadiances);
   context.groups = &sums;
-  const Rgb whole = tracer_.radiance(camera.path(), camera.hit, context);
+  const PathBatch& batch = PathBatch::traced(cameras, tracer_, context);
   context.groups = nullptr;
-  const Rgb kept = context.clamp(whole);
-  if (kept != whole && isFinite(whole)) {
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const Rgb whole = batch.radiance(i), kept = context.clamp(whole);
+    samples[i] = kept;
+    if (kept == whole || !isFinite(whole)) continue;
     const float scale = maxComponent(absolute(kept)) / maxComponent(absolute(whole));
-    for (Rgb& radiance : context.layers) radiance *= scale;
+    for (Rgb& radiance : cameras[i].layers) radiance *= scale;
   }
-  return kept;
 }
 
 }  // namespace chromeball

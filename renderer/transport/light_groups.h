@@ -60,11 +60,14 @@ struct DirectedLight {
 // The sums to which a path adds its light by group, in addition to its whole radiance.
 class GroupSums {
  public:
-  // `sums`: one element per group. `scratch` keeps its capacity. `directions`, if not null, gets
-  // the probe's light in place of its groups, one entry each time that the path finds the probe.
-  GroupSums(const LightGroups& groups, std::span<Rgb> sums, std::vector<Rgb>& scratch,
-            std::vector<DirectedLight>* directions = nullptr)
-      : groups_(groups), sums_(sums), scratch_(scratch), directions_(directions) {}
+  // `scratch` keeps its capacity. `directions`, if not empty, gets the probe's light in place of
+  // its groups: for each path, one entry each time that it finds the probe.
+  GroupSums(const LightGroups& groups, std::vector<Rgb>& scratch,
+            std::span<std::vector<DirectedLight>> directions = {})
+      : groups_(groups), scratch_(scratch), directions_(directions) {}
+
+  // The path whose light is added next. `sums`: one element per group.
+  void select(size_t path, std::span<Rgb> sums) { path_ = path, sums_ = sums; }
 
   void addEmitted(const Instance& instance, const Rgb& radiance) {
     sums_[size_t(groups_.ofInstance(instance))] += radiance;
@@ -87,12 +90,13 @@ class GroupSums {
   template <class Split>
   void add(std::optional<size_t> source, const Rgb& throughput, const Split& split);
 
-  bool isDirected(std::optional<size_t> source) const { return directions_ && !source; }
+  bool isDirected(std::optional<size_t> source) const { return !directions_.empty() && !source; }
 
   const LightGroups& groups_;
-  std::span<Rgb> sums_;
   std::vector<Rgb>& scratch_;
-  std::vector<DirectedLight>* directions_;
+  std::span<std::vector<DirectedLight>> directions_;
+  size_t path_ = 0;
+  std::span<Rgb> sums_;
 };
 
 // Path tracing of all instances; the layers are the groups, whose sum is the radiance up to
@@ -104,6 +108,8 @@ class GroupIntegrator : public Integrator {
       : tracer_(tracer), groups_(groups) {}
 
   Sample sample(const CameraSample& camera, PathContext& context) const override;
+  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+                  std::span<Sample> samples) const override;
   std::vector<Accumulation> layers() const override {
     return std::vector<Accumulation>(groups_.names().size(), Accumulation::Sum);
   }

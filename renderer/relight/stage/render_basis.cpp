@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "relight/stage/render_basis.h"
 
+#include <array>
+
 #include "base/parallel.h"
 
 namespace chromeball {
@@ -39,26 +41,42 @@ class BasisIntegrator : public Integrator {
       : tracer_(tracer), groups_(groups), top_(top), sums_(sums) {}
 
   // Integrators with layers have a film with sums in double for each layer, which would be too
-  // large; this writes to its own sums, only at the camera's pixel.
+  // large; this writes to its own sums, only at the cameras' pixels.
   Sample sample(const CameraSample& camera, PathContext& context) const override {
+    Sample found;
+    sampleMany({&camera, 1}, context, {&found, 1});
+    return found;
+  }
+
+  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+                  std::span<Sample> samples) const override {
     struct Scratch {  // keeps its capacity
-      std::vector<DirectedLight> directed;
+      std::array<std::vector<DirectedLight>, PathBatch::kMaxPaths> directed;
       std::vector<Rgb> groups;
+      std::vector<CameraSample> cameras;
     };
     thread_local Scratch found;
-    found.directed.clear();
-    found.groups.assign(groups_.names().size(), Rgb(0));
-    GroupSums sums(groups_, found.groups, context.lightRadiances, &found.directed);
+    const size_t count = groups_.names().size();
+    found.groups.assign(cameras.size() * count, Rgb(0));
+    found.cameras.assign(cameras.begin(), cameras.end());
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      found.directed[i].clear();
+      found.cameras[i].layers = std::span(found.groups).subspan(i * count, count);
+    }
+    GroupSums sums(groups_, context.lightRadiances, found.directed);
     context.groups = &sums;
-    const Sample whole = tracer_.radiance(camera.path(), camera.hit, context);
+    const PathBatch& batch = PathBatch::traced(found.cameras, tracer_, context);
     context.groups = nullptr;
-    if (!whole.defect) add(camera.x, camera.y - top_, found.directed, found.groups);
-    return whole;
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      samples[i] = batch.radiance(i);
+      if (!samples[i].defect)
+        add(cameras[i].x, cameras[i].y - top_, found.directed[i], found.cameras[i].layers);
+    }
   }
 
  private:
   void add(int x, int y, const std::vector<DirectedLight>& directed,
-           const std::vector<Rgb>& groups) const {
+           std::span<const Rgb> groups) const {
     float* elements = sums_.elements.at(x, y);
     for (const DirectedLight& light : directed)
       sums_.basis.forValues(light.wi, [&](int element, float value) {
