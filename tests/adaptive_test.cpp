@@ -213,5 +213,56 @@ TEST(Adaptive, NeedsSixteenSamples) {
   }
 }
 
+// The left half of the picture is 1; on the right half one sample in two is 9, clamped to 3, the
+// other 1, and each loses 5 to a depth limit.
+class HalfNoisy : public Integrator {
+ public:
+  Sample sample(const CameraSample& camera, PathContext& context) const override {
+    const bool isBright = camera.x >= 16 && hash(context.sampler.sampleKey(), 1) % 2 == 0;
+    const Rgb found(isBright ? 9.0f : 1.0f);
+    context.depthCut.addFound(found);
+    if (camera.x >= 16) context.depthCut.add(DepthLimit::Depth, 5);
+    return context.clamp(found);
+  }
+};
+
+// Fractions of the light are those of the picture, not of the samples, of which the noisy half
+// takes more; also for a shard that keeps none of the samples that all pixels take.
+TEST(Adaptive, FractionsOfLightAreThoseOfThePicture) {
+  const Scene scene;
+  const World world(scene, {}, allTables());
+  const std::atomic<bool> stop = false;
+  RenderSettings settings = adaptiveRender(32, 32, 256);
+  settings.clamp = 3.0f;
+  for (const RenderSettings& s : {settings, shardOf(settings, 0, 2), shardOf(settings, 1, 2)}) {
+    const RenderResult r = render(
+        HalfNoisy(), world, Camera(), s, [](double) {}, stop);
+    EXPECT_TRUE(r.adaptive);
+    EXPECT_NEAR(r.clamped.fractionRemoved(), 1.5 / 3, 0.01);  // 0.25 * 6 of (1 + 5) / 2
+    EXPECT_NEAR(r.depthCut.fraction(DepthLimit::Depth), 2.5 / 5.5, 0.01);
+    EXPECT_GT(r.clamped.count, uint64_t(s.shard.count == 1 ? 32 * 32 * 64 * 1.2 : 32 * 32 * 32));
+  }
+}
+
+// Where one pixel in a thousand is noisy, the limit of its rate leaves the rest of the samples
+// untaken; the stated number is that of the samples in the film.
+TEST(Adaptive, TheStatedNumberOfSamplesIsWhatPixelsTook) {
+  class OneNoisyPixel : public Integrator {
+    Sample sample(const CameraSample& camera, PathContext& context) const override {
+      return Rgb(camera.x == 16 && camera.y == 16 ? hash(context.sampler.sampleKey(), 1) % 2 : 1);
+    }
+  };
+  const Scene scene;
+  const World world(scene, {}, allTables());
+  const std::atomic<bool> stop = false;
+  const RenderResult r = render(
+      OneNoisyPixel(), world, Camera(), adaptiveRender(100, 100, 256), [](double) {}, stop);
+  double sum = 0;
+  const Image counts = r.film.sampleCounts();
+  for (const float count : counts.texels) sum += count;
+  EXPECT_LT(r.samplesPerPixel(), 200u);
+  EXPECT_NEAR(r.samplesPerPixel(), sum / 10000, 0.5);
+}
+
 }  // namespace
 }  // namespace chromeball::adaptive_test

@@ -192,6 +192,45 @@ TEST(GlassShadows, OnlySmoothGlassLetsLightPass) {
   EXPECT_EQ(radianceOf(scene, underTheSlab()), Rgb(0));
 }
 
+// A roughness below 0.01 counts as 0, and so does that of a boundary that does not refract.
+TEST(GlassShadows, NearlySmoothGlassIsSmooth) {
+  const auto floorUnder = [](const Material& material) {
+    Scene scene = floorAndSlab(0.5f, 1.25f, material);
+    scene.lights.push_back(sun({0, -1, 0}, Rgb(2)));
+    return radianceOf(scene, underTheSlab());
+  };
+  Material sheet = glass(), body = glass(), air = glass();
+  sheet.extended->thinWalled = true;
+  air.ior = 1;
+  for (Material& material : {std::ref(sheet), std::ref(body), std::ref(air)}) {
+    const Rgb smooth = floorUnder(material);
+    EXPECT_GT(smooth.x, 0.5f * kAlbedo / kPi);
+    material.roughness = 0.009f;
+    EXPECT_EQ(floorUnder(material), smooth);
+  }
+  air.roughness = 0.5f;
+  EXPECT_NEAR(floorUnder(air).x / (kAlbedo / kPiD * 2 * std::exp(-kAttenuation.x * 0.75)), 1, 1e-5);
+}
+
+// Where a texture makes a sheet smooth, light passes, and only there.
+TEST(GlassShadows, ATextureMakesASheetSmooth) {
+  Material sheet = glass();
+  sheet.extended->thinWalled = true;
+  sheet.roughness = 1;
+  sheet.metallicRoughnessTexture.texture = 0;
+  for (const uint8_t roughness : std::to_array<uint8_t>({0, 2, 3, 255})) {
+    Scene scene = floorAndSlab(0.5f, 1.25f);
+    scene.materials[0] = sheet;
+    scene.grids.push_back(
+        std::make_unique<TexelGrid>(TexelGrid{1, 1, {{0, roughness, 0, 255}}, {}}));
+    scene.textures.push_back({scene.grids.back().get()});
+    scene.lights.push_back(sun({0, -1, 0}, Rgb(2)));
+    const float passed = roughness / 255.0f < 0.01f ? 0.96f * 0.96f : 0;
+    EXPECT_NEAR(radianceOf(scene, underTheSlab()).x / (kAlbedo / kPi * 2), passed, 1e-4f)
+        << int(roughness);
+  }
+}
+
 // The camera's view through glass is still refracted.
 TEST(GlassShadows, TheCameraSeesRefraction) {
   const Probe probe(studioProbe({64, 32}));

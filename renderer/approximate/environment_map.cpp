@@ -84,7 +84,7 @@ PathSettings withoutMis(PathSettings settings) {
 // and the middle of the lobe.
 vec3 reflectedBy(const MapLobe& lobe, const vec3& wo, vec2 u) {
   const float alpha = lobe.roughness * lobe.roughness;
-  if (alpha < ggx::kSmoothAlpha) return lobe.direction;
+  if (alpha < kSmoothAlpha) return lobe.direction;
   const Frame frame(glm::normalize(wo + lobe.direction));
   const vec3 local = frame.toLocal(wo);
   const vec3 h = ggx::sampleVisibleNormal(local, alpha, u);

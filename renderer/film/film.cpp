@@ -135,6 +135,12 @@ Image Film::sampleCounts() const {
   return image;
 }
 
+double Film::meanSampleCount() const {
+  double sum = 0;
+  for (const Pixel& pixel : pixels_) sum += pixel.count();
+  return sum / double(pixels_.size());
+}
+
 PixelErrors Film::errors() const {
   const glm::dvec4 unknown(std::numeric_limits<double>::quiet_NaN());
   const size_t count = pixels_.size();

@@ -65,6 +65,7 @@ class Film {
   Image mean() const;            // RGB radiance
   Image halfDifference() const;  // half the difference of the means of the halves
   Image sampleCounts() const;    // one channel
+  double meanSampleCount() const;
   static size_t bytesPerPixel() { return sizeof(Pixel) + sizeof(Early); }  // at most
 
   PixelErrors errors() const;

@@ -69,7 +69,7 @@ std::vector<Setting> commandRows() {
            .type = Number,
            .range = kPositive,
            .unit = "GB",
-           .absent = "0.8 times the machine's memory",
+           .absent = "0.8 times what the machine and its limits allow",
            .help = "Refuses images and scenes that take more than this.",
            .effect = Effect::Run},
           {.option = "texture-memory",

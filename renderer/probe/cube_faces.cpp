@@ -115,16 +115,21 @@ void swapFaces(Image& strip, int a, int b) {
                      strip.at(b * n, y));
 }
 
-// Puts the faces of a graphics API where OpenEXR's names of the axes would have them.
+// Puts the faces of a graphics API, in which pz is the front, where OpenEXR's names of the axes
+// would have them. Most programs that write six files are such.
 void orientAxes(const fs::path& folder, ImageFile& file) {
   constexpr double kBetter = 0.99;  // else faces of one colour would be decided by rounding
   const double openGl = seamError(file.image, {0, kNz, 1, kPz}),
                openExr = seamError(file.image, {0, kPz, 1, kNz});
-  const bool isOpenGl = openGl < kBetter * openExr;
-  if (isOpenGl) swapFaces(file.image, kPz, kNz);
+  const bool isOpenExr = openExr < kBetter * openGl;
+  if (!isOpenExr) swapFaces(file.image, kPz, kNz);
+  const bool isKnown = isOpenExr || openGl < kBetter * openExr;
   addNote(file.messages, "{}: read as a cube map, the face pz as {}", folder.string(),
-          isOpenGl ? "its front, -Z: the edges fit as in OpenGL and Direct3D"
-                   : "+Z: the edges fit as in OpenEXR");
+          isOpenExr ? "+Z: the edges fit as in OpenEXR"
+          : isKnown
+              ? "its front, -Z: the edges fit as in OpenGL and Direct3D"
+              : "its front, -Z, as in OpenGL and Direct3D: the edges do not tell; files named "
+                "right, left, top, bottom, front, back leave no doubt");
 }
 
 }  // namespace

@@ -204,8 +204,16 @@ std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesyste
   return lines;
 }
 
+std::string detection(const LoadedProbe& probe, const std::filesystem::path& path) {
+  const std::string mapping = mappingName(probe.mapping);
+  return fmt::format("{}: detected as {} {} probe because {}", path.string(),
+                     mapping.starts_with('a') ? "an" : "a", mapping, probe.reason);
+}
+
 Messages probeMessages(const LoadedProbe& probe, const std::filesystem::path& path) {
   Messages messages = probe.messages;
+  if (probe.detected && probe.mapping == Mapping::AngularMap)  // or a mirror ball
+    addNote(messages, "{}", detection(probe, path));
   for (std::string& line : warnings(probe, path))
     messages.push_back({Message::Kind::Warning, std::move(line)});
   return messages;

@@ -47,7 +47,10 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
 // Warnings for the user, each "FILE: ..."; often none.
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path);
 
-// All messages about the file: the reader's messages, then those warnings.
+// What was detected, and why: "FILE: detected as ...".
+std::string detection(const LoadedProbe& probe, const std::filesystem::path& path);
+
+// All messages about the file: the reader's, a note where the map may be another one, the warnings.
 Messages probeMessages(const LoadedProbe& probe, const std::filesystem::path& path);
 
 // The warnings about the light itself: the probe is black, or clipped.

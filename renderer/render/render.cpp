@@ -130,11 +130,14 @@ class Renderer {
     return state_.allocation ? state_.allocation->count(x, y, mean) : mean;
   }
 
-  // These samples only served for learning.
+  // These samples only served for learning, and for fractions of the light.
   void forgetRepeated() {
     if (live_) live_->replaced();
     RenderResult own(settings_, integrator_.layers());
     own.rays = state_.result.rays;
+    own.depthCut = state_.result.depthCut;
+    own.clamped = state_.result.clamped;
+    own.clamped.count = 0;
     own.groups = std::move(state_.result.groups);
     state_.result = std::move(own);
   }
@@ -154,10 +157,14 @@ class Renderer {
     RenderResult& result = state_.result;
     workers_.forEach([&](PixelWorker& worker) {
       result.rays.add(std::exchange(worker.context.counts, {}));
-      // Its sums are those of the image only while all pixels have as many samples.
+      // Sums of light are those of the image only while all pixels have as many samples.
       const DepthCut cut = std::exchange(worker.context.depthCut, {});
-      if (!state_.allocation) result.depthCut.add(cut);
-      result.clamped.add(worker.context.clamp.takeClamped());
+      ClampedSamples clamped = worker.context.clamp.takeClamped();
+      if (state_.allocation)
+        clamped.forgetLight();
+      else
+        result.depthCut.add(cut);
+      result.clamped.add(clamped);
       result.invalid.add(std::exchange(worker.invalid, {}));
     });
   }

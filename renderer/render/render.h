@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 
 #include "base/progress.h"
 #include "film/aov.h"
@@ -31,6 +32,11 @@ struct RenderResult {
   // Only these pixels, with the names of the groups.
   RenderResult part(const PixelRect& rect) const;
 
+  // The mean number of samples that pixels took.
+  uint32_t samplesPerPixel() const {
+    return adaptive ? uint32_t(std::lround(film.meanSampleCount())) : samples;
+  }
+
   // Archives the totals, then the pixels in bands (film/rows.h).
   void archive(Archive& a);
   void archiveTotals(Archive& a);
@@ -45,7 +51,7 @@ struct RenderResult {
   DepthCut depthCut;
   InvalidSamples invalid;
   ClampedSamples clamped;
-  uint32_t samples = 0;       // mean per pixel; 0 where the first pass was interrupted
+  uint32_t samples = 0;       // scheduled mean per pixel; 0: the first pass was interrupted
   bool isRepeated = false;    // all shards take these samples, and this is not the one to keep them
   bool adaptive = false;      // whether pixels took different numbers of samples
   size_t guidedRegions = 0;   // of the light guide; 0: light samples were not guided

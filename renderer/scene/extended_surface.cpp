@@ -4,12 +4,12 @@
 namespace chromeball {
 namespace {
 
-// A smooth boundary that transmits light, without other layers.
+// A boundary that transmits light, without other layers, and is smooth or where a texture makes it.
 bool isClear(const Material& m) {
-  if (!m.extended || m.unlit || m.roughness != 0) return false;
+  if (m.unlit || !(m.transmitsSharply() || (m.transmits() && m.metallicRoughnessTexture)))
+    return false;
   const ExtendedMaterial& e = *m.extended;
-  return e.transmission > 0 && e.clearcoat == 0 && isBlack(e.sheenColor) && e.anisotropy == 0 &&
-         e.iridescence == 0;
+  return e.clearcoat == 0 && isBlack(e.sheenColor) && e.anisotropy == 0 && e.iridescence == 0;
 }
 
 // A factor, times a channel of a texture if there is one.
@@ -106,9 +106,12 @@ Rgb sheetTransmittance(const MaterialPoint& m, float transmission, float cosine)
 
 Rgb straightTransmittance(const Scene& scene, const Instance& instance, const Surface& surface,
                           const vec3& direction) {
-  if (!passesShadows(*surface.material)) return Rgb(0);
-  return sheetTransmittance(materialAt(scene, surface),
-                            extendedMaterialAt(scene, instance, surface).transmission,
+  const Material& material = *surface.material;
+  if (!passesShadows(material)) return Rgb(0);
+  const MaterialPoint point = materialAt(scene, surface);
+  if (!material.transmitsSharply() && point.roughness * point.roughness >= kSmoothAlpha)
+    return Rgb(0);
+  return sheetTransmittance(point, extendedMaterialAt(scene, instance, surface).transmission,
                             std::fabs(glm::dot(surface.normal, direction)));
 }
 

@@ -41,8 +41,8 @@ float coatTransmittance(const Scene& scene, const Instance& instance, const Surf
 // Surfaces that shadow rays pass: smooth thin sheets (KHR_materials_transmission), which do not
 // refract, and, as an approximation, smooth bodies of glass, as if they did not refract either.
 
-// Whether the material transmits light only in a straight line, so that straightTransmittance() is
-// its whole transmission.
+// Whether the material transmits light in a straight line, so that straightTransmittance() is its
+// whole transmission: where a texture decides that, at the points that it makes smooth.
 bool passesStraight(const Material& material);
 
 // Sets Material::straightShadows of smooth bodies that are opaque (not masked or blended) and have
@@ -58,7 +58,7 @@ inline bool passesShadows(const Material& material) {
 Rgb sheetTransmittance(const MaterialPoint& material, float transmission, float cosine);
 
 // The same at a surface point, along `direction` (unit, either sign); black unless
-// passesShadows().
+// passesShadows(), and where a texture makes the surface rough.
 Rgb straightTransmittance(const Scene& scene, const Instance& instance, const Surface& surface,
                           const vec3& direction);
 

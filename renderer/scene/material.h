@@ -2,6 +2,7 @@
 // A glTF 2.0 metallic-roughness material with the values of the file.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -50,6 +51,11 @@ enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 // and mirror reflections (back-face culling). Light: also light from behind. Off: none.
 enum class SingleSided : uint8_t { Camera, Light, Off };
 
+// GGX widths below this one count as 0: a highlight would be 50 times narrower than the sun.
+inline constexpr float kSmoothAlpha = 1e-4f;
+// |ior - 1| below which light passes straight through a boundary.
+inline constexpr float kMinRefraction = 1e-3f;
+
 // Made, copied and destroyed in material.cpp, to be compiled once.
 struct Material {
   Material();
@@ -92,11 +98,20 @@ struct Material {
     return metallicRoughnessTexture || (specularGlossiness && specularColorTexture);
   }
 
+  // Whether the surface is a perfect mirror, or transmits like clear glass, wherever a texture does
+  // not make it rougher.
+  bool isSmooth() const { return roughness * roughness < kSmoothAlpha; }
+
   // Whether rays may pass the surface, refracted or not.
   bool transmits() const { return extended && extended->transmission > 0; }
 
   // Whether the surface is the boundary of a transparent body (KHR_materials_volume).
   bool isBody() const { return extended && extended->transmission > 0 && !extended->thinWalled; }
+
+  // Whether light passes in a single direction, which light samples cannot find.
+  bool transmitsSharply() const {
+    return transmits() && (isSmooth() || (isBody() && std::fabs(ior - 1) < kMinRefraction));
+  }
 
   // Replaces the base colour where the surface is visible to the projector; null: none.
   const Projection* projection = nullptr;

@@ -8,6 +8,7 @@
 #include "description/capabilities.h"
 #include "probe/sun_extraction.h"
 #include "render/guide_training.h"
+#include "scene/extended_surface.h"
 #include "session/memory_estimate.h"
 
 namespace chromeball {
@@ -115,9 +116,7 @@ void addProbe(const std::string& path, const LoadedProbe& probe, Messages& messa
   messages.insert(messages.end(), probe.messages.begin(), probe.messages.end());
   for (const std::string& line : warnings(probe, path)) addWarning(messages, "{}", line);
   if (!probe.detected) return;
-  const std::string mapping = mappingName(probe.mapping);
-  addNote(messages, "{}: detected as {} {} probe because {}", path,
-          mapping.starts_with('a') ? "an" : "a", mapping, probe.reason);
+  addNote(messages, "{}", detection(probe, path));
 }
 
 void addPlateScale(const CompositeEntry& composite, const PlateScale& found, Messages& messages) {
@@ -146,12 +145,18 @@ Messages loadMessages(const LoadedScene& loaded) {
     messages.insert(messages.end(), composite->messages.begin(), composite->messages.end());
   warn(loaded.modelWarnings);
   for (const std::string& line : scene.notes) addNote(messages, "{}", line);
-  const bool blocksLamps = hasMaterial(scene, [](const Material& m) {
-    return m.isBody() && m.roughness == 0 && !m.straightShadows;
-  });
-  if (!scene.lights.empty() && blocksLamps)
+  const auto blocksLamps = [&](bool body) {
+    return !scene.lights.empty() && hasMaterial(scene, [&](const Material& m) {
+      return m.isBody() == body && m.transmitsSharply() && !passesShadows(m);
+    });
+  };
+  if (blocksLamps(true))
     addWarning(messages,
                "punctual lights do not pass smooth bodies of glass, which refract their light: "
+               "surfaces behind are in full shadow; light from emissive surfaces passes");
+  if (blocksLamps(false))
+    addWarning(messages,
+               "punctual lights do not pass smooth sheets with a coat, sheen, film or anisotropy: "
                "surfaces behind are in full shadow; light from emissive surfaces passes");
   if (receivesNoShadow(loaded))
     addWarning(messages,

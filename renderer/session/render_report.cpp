@@ -87,7 +87,7 @@ json describe(const DepthCut& cut, const RenderSettings& settings) {
 
 json describe(const RenderResult& result) {
   return {
-      {"samples_per_pixel", result.samples},
+      {"samples_per_pixel", result.samplesPerPixel()},
       {"adaptive", result.adaptive},
       {"guided", result.guidedRegions > 0},
       {"caustics_guided", result.causticFraction > 0},
@@ -157,7 +157,7 @@ json statistics(const LoadedScene& loaded, const FinishedRender& result,
 Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render) {
   const RayCounts& rays = render.rays;
   Metadata metadata;
-  metadata["samples"] = int(render.samples);
+  metadata["samples"] = int(render.samplesPerPixel());
   metadata["rays"] = std::to_string(rays.camera + rays.shadow + rays.bounce);
   metadata["noise"] = float(finished.noise.noise);
   metadata["noise_median"] = float(finished.noise.median);
@@ -212,7 +212,8 @@ Messages checkOutputs(const RenderDescription& description) {
     if (description.origins.has(setting))
       addWarning(messages, "{} has no effect: {}", namedOrigin(description, setting), why);
   };
-  // Keys of a scene file are for whatever it is rendered to. A part keeps its exposure for the whole.
+  // Keys of a scene file are for whatever it is rendered to. A part keeps its exposure for the
+  // whole.
   for (const char* name :
        {"output.tonemap", "output.white_balance", "output.develop", "output.exposure"})
     if (!has(".png") && description.origins.of(name).starts_with("--") &&

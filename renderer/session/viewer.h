@@ -26,7 +26,7 @@ inline ImageSoFar imageSoFar(FinishedImage finished, const RenderResult& render)
   };
   if (!has("variance")) layers.push_back({"variance", "RGB", std::move(finished.noise.variance)});
   if (!has("samples")) layers.push_back({"samples", "", render.film.sampleCounts()});
-  return {std::move(finished.image), render.samples, finished.noise.noise};
+  return {std::move(finished.image), render.samplesPerPixel(), finished.noise.noise};
 }
 
 class Viewer {

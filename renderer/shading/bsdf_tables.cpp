@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-constexpr float kMirrorAlpha = 1.001e-4f;  // ggx::kSmoothAlpha, the smallest node, with a margin
+constexpr float kMirrorAlpha = 1.001e-4f;  // kSmoothAlpha, the smallest node, with a margin
 
 // The smoothest surfaces are perfect mirrors, without masking even at grazing angles.
 SpecularAlbedo mirrorAlbedo(float mu) {

@@ -7,9 +7,6 @@
 
 namespace chromeball::ggx {
 
-// A surface below this width is a mirror: its highlight is 50 times narrower than the sun.
-inline constexpr float kSmoothAlpha = 1e-4f;
-
 // D(h): pdf of microfacet normals per solid angle and projected area (Walter et al. 2007, eq. 33).
 // `alpha` is the width, the square of glTF's perceptual roughness. This form of the equation is
 // accurate for alpha down to 1e-4.

@@ -9,7 +9,6 @@
 namespace chromeball {
 namespace {
 
-constexpr float kMinRefraction = 1e-3f;  // |eta - 1| below which light passes straight
 
 // Fresnel's reflectance at normal incidence.
 float normalReflectance(float eta) {
@@ -44,7 +43,7 @@ Glass::Glass(const MaterialPoint& m, const RefractiveIndex& index, const Surface
     slope_[c] = own < 1 ? (m.dielectricF90 - f0) / (1 - own) : 0;
     offset_[c] = f0 - slope_[c] * own;
   }
-  smooth_ = alpha_ < ggx::kSmoothAlpha || maxComponent(glm::abs(eta_ - 1.0f)) < kMinRefraction;
+  smooth_ = alpha_ < kSmoothAlpha || maxComponent(glm::abs(eta_ - 1.0f)) < kMinRefraction;
   lobes_ = smooth_ || alpha_ < mirrorAlpha ? Lobes::Narrow : Lobes::Broad;
   lambdaO_ = ggx::lambda(wo_.z, alpha_);
   if (smooth_) return;
@@ -163,7 +162,7 @@ Sheet::Sheet(const Rgb& fraction, float roughness, const Surface& surface, const
       localWo_(frame_.toLocal(wo)),
       fraction_(fraction),
       alpha_(roughness * roughness),
-      smooth_(alpha_ < ggx::kSmoothAlpha),
+      smooth_(alpha_ < kSmoothAlpha),
       lobes_(smooth_ || alpha_ < mirrorAlpha ? Lobes::Narrow : Lobes::Broad),
       gain_(1) {
   localWo_.z = std::max(localWo_.z, 1e-6f);

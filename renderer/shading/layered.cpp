@@ -79,7 +79,7 @@ void Layered::addBase(const Point& p, const MaterialPoint& m, const Rgb& metalF0
     const Rgb reflected =
         addOpaque(p, m, m.baseColor * (1 - m.metallic - transmission), metalF0, weight);
     if (transmission == 0) return;
-    const bool smooth = m.roughness * m.roughness < ggx::kSmoothAlpha && e.iridescence == 0;
+    const bool smooth = m.roughness * m.roughness < kSmoothAlpha && e.iridescence == 0;
     const Rgb fraction =
         smooth ? sheetTransmittance(m, e.transmission, glm::dot(p.surface.normal, p.wo))
                : m.baseColor * transmission * (1.0f - reflected);

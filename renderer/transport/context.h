@@ -26,6 +26,7 @@ struct ClampedSamples {
   uint64_t count = 0;
   double removed = 0, kept = 0;  // sums over samples of (absolute) luminance
 
+  void forgetLight() { removed = kept = 0; }
   double fractionRemoved() const { return removed > 0 ? removed / (removed + kept) : 0; }
   void add(const ClampedSamples& other) {
     count += other.count, removed += other.removed, kept += other.kept;

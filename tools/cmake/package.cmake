@@ -20,11 +20,11 @@ comparison of the published methods of sampling a probe.
 .
 The command needs a processor with AVX2. TIFF files need the package
 chromeball-tiff; the static library in this package needs those packages of
-its suggestions that end in -dev.")
+its suggestions that end in -dev, and pkg-config.")
 set(CPACK_DEBIAN_CHROMEBALL_PACKAGE_NAME chromeball)
 string(JOIN ", " CPACK_DEBIAN_CHROMEBALL_PACKAGE_SUGGESTS "chromeball-tiff (= ${PROJECT_VERSION})"
        libblosc-dev libdraco-dev libembree-dev libfmt-dev libglm-dev libjpeg-dev libmeshoptimizer-dev
-       libopenexr-dev libpng-dev libtbb-dev libtinygltf-dev libwebp-dev)
+       libopenexr-dev libpng-dev libtbb-dev libtinygltf-dev libwebp-dev pkg-config)
 set(CPACK_COMPONENT_TIFF_DESCRIPTION "module of chromeball that reads TIFF files
 Loaded by the command chromeball for the first TIFF file that it reads, by
 way of OpenImageIO.")

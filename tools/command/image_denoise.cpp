@@ -82,7 +82,7 @@ void run(const ImageDenoiseArguments& arguments) {
                            .albedo = reader.halved("albedo", 3, kMaxUnit),
                            .normal = reader.halved("normal", 3, kMaxUnit),
                            .disparity = reader.halved("disparity", 1)};
-  print(file.messages);  // not of a file that lacks layers: that is said instead
+  print(file.messages, arguments.quiet);  // not of a file that lacks layers: that is said instead
   checkMemory(arguments.input, color.mean);
   const std::atomic<bool> never = false;
   Denoised denoised = [&] {

@@ -75,9 +75,10 @@ void writeKept(const std::string& out, OutputImage output, const std::string& in
   print(writeImage(out, output, transform));
 }
 
-LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option) {
+LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option,
+                      bool quiet) {
   LoadedProbe probe = loadProbe(path, mapping, option);
-  print(probeMessages(probe, path));
+  print(probeMessages(probe, path), quiet);
   return probe;
 }
 

@@ -77,7 +77,7 @@ void run(const MergeArguments& arguments) {
   addExcluded(whole.result, messages);
   print(messages, arguments.quiet);
   if (!arguments.quiet)
-    fmt::print("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samples,
+    fmt::print("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samplesPerPixel(),
                parts.paths().size(), parts.paths().size() == 1 ? "" : "s", inWords(finished.noise),
                inWords(finished.denoised),
                printable(fmt::format("{}", fmt::join(arguments.outputs, ", "))));

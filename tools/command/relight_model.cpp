@@ -8,8 +8,8 @@
 #include "base/text.h"
 #include "front/arguments.h"
 #include "image/io/output_file.h"
+#include "image_files.h"
 #include "messages.h"
-#include "probe/load.h"
 #include "probe/probe.h"
 #include "relight/transfer/glossy_model.h"
 #include "relight/transfer/transfer_points.h"
@@ -90,12 +90,8 @@ class RelightModel {
   }
 
   std::vector<Rgb> coefficients() {
-    const LoadedProbe loaded = loadProbe(options_.probes.front(), options_.mapping, "--mapping");
-    print(loaded.messages);
-    for (const auto& lines : {warnings(loaded, options_.probes.front()),
-                              lightWarnings(loaded, options_.probes.front())})
-      warnings_.insert(warnings_.end(), lines.begin(), lines.end());
-    for (const Message& message : loaded.messages) warnings_.push_back(message.text);
+    const LoadedProbe loaded =
+        openProbe(options_.probes.front(), options_.mapping, "--mapping", options_.quiet);
     const Rgb scale = parseColor(options_.scale, "--scale");
     const Image map = Probe(loaded.latLong, {}, scale).latLong();
     return file_.basis().project(map, options_.rotation);

@@ -83,7 +83,7 @@ glm::ivec2 parsePixel(const std::string& text, const StageBands& stage) {
 }
 
 Image loadLight(const RelightOptions& a, const std::string& path) {
-  const LoadedProbe loaded = openProbe(path, a.mapping, "--mapping");
+  const LoadedProbe loaded = openProbe(path, a.mapping, "--mapping", a.quiet);
   return Probe(loaded.latLong, {}, parseColor(a.scale, "--scale")).latLong();
 }
 

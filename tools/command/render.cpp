@@ -128,7 +128,7 @@ void printOutcome(const RenderDescription& description, const FinishedRender& re
                                       ? fmt::format("; --resume goes on from {}", *checkpoint)
                                       : ""));
   if (!quiet)
-    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}{}: {}\n", render.samples,
+    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}{}: {}\n", render.samplesPerPixel(),
                guidedInWords(render), result.seconds, inWords(result.noise),
                inWords(result.denoised), exposure ? ", " + chosenInWords(*exposure) : "",
                printable(fmt::format("{}", fmt::join(description.output.files, ", "))));

@@ -163,7 +163,9 @@ TevDisplay::~TevDisplay() {
 
 void TevDisplay::show(std::shared_ptr<const ImageSoFar> image) {
   {
-    const std::scoped_lock lock(mutex_);
+    std::unique_lock lock(mutex_);
+    if (waiting_ && waitingName_ != name_)  // the last image of the frame before
+      changed_.wait_for(lock, kPatience, [&] { return !waiting_ || hasEnded_; });
     waiting_ = std::move(image);
     waitingName_ = name_;
     isIdle_ = false;
@@ -185,6 +187,7 @@ void TevDisplay::sendImages(std::unique_lock<std::mutex>& lock) {
     const std::shared_ptr<const ImageSoFar> image = std::move(waiting_);
     const std::string name = waitingName_;
     lock.unlock();
+    changed_.notify_all();
     const bool arrived = send(name, image->image);
     lock.lock();
     if (!arrived) {
