@@ -4,10 +4,11 @@
 namespace chromeball {
 namespace {
 
-// A boundary that transmits light, without other layers, and is smooth or where a texture makes it.
+// A boundary that transmits light, without other layers, and is smooth; of a sheet, also where only
+// a texture makes it so.
 bool isClear(const Material& m) {
-  if (m.unlit || !(m.transmitsSharply() || (m.transmits() && m.metallicRoughnessTexture)))
-    return false;
+  if (m.unlit || !m.transmits()) return false;
+  if (!m.isSmooth() && !(m.extended->thinWalled && m.metallicRoughnessTexture)) return false;
   const ExtendedMaterial& e = *m.extended;
   return e.clearcoat == 0 && isBlack(e.sheenColor) && e.anisotropy == 0 && e.iridescence == 0;
 }
@@ -109,8 +110,7 @@ Rgb straightTransmittance(const Scene& scene, const Instance& instance, const Su
   const Material& material = *surface.material;
   if (!passesShadows(material)) return Rgb(0);
   const MaterialPoint point = materialAt(scene, surface);
-  if (!material.transmitsSharply() && point.roughness * point.roughness >= kSmoothAlpha)
-    return Rgb(0);
+  if (!material.isSmooth() && point.roughness * point.roughness >= kSmoothAlpha) return Rgb(0);
   return sheetTransmittance(point, extendedMaterialAt(scene, instance, surface).transmission,
                             std::fabs(glm::dot(surface.normal, direction)));
 }

@@ -77,9 +77,11 @@ void checkInside(const Scene& scene, Surroundings surroundings, const std::strin
 // Replaces the probe's names in the list of files that were read.
 void replaceFiles(const std::vector<std::string>& earlier, const std::vector<std::string>& probe,
                   std::vector<std::string>& files) {
-  const auto known = earlier.empty() ? std::ranges::subrange(files.end(), files.end())
-                                     : std::ranges::search(files, earlier);
-  files.insert(files.erase(known.begin(), known.end()), probe.begin(), probe.end());
+  auto at = earlier.empty()
+                ? files.end()
+                : std::search(files.begin(), files.end(), earlier.begin(), earlier.end());
+  if (at != files.end()) at = files.erase(at, at + std::ptrdiff_t(earlier.size()));
+  files.insert(at, probe.begin(), probe.end());
 }
 
 // The probe, if it has turned or is another one. An exception leaves everything unchanged.
