@@ -59,9 +59,6 @@ Examination examine() {
   Examination found;
   std::error_code error;
   found.temporaryFolder = std::filesystem::temp_directory_path(error).string();
-  if (!found.images.problem.empty())
-    found.missing.push_back("the module for TIFF, whose files cannot be read (" +
-                            found.images.problem + ")");
   if (found.temporaryFolder.empty())
     found.missing.push_back("a folder for temporary files ($TMPDIR), which --texture-memory needs");
   if (memoryBudget() < kLittleMemory)
@@ -120,8 +117,9 @@ void print(const Examination& f) {
   printFinding("chromeball", CHROMEBALL_VERSION ", by " + f.machine.compiler);
   printFinding("Embree", fmt::format("{}, {} rays at once", f.embree.version, f.embree.lanes));
   printFinding("OpenEXR", exrVersion());
-  printFinding("OpenImageIO",
-               f.images.version.empty() ? "missing" : f.images.version + ", for TIFF");
+  printFinding("OpenImageIO", f.images.version.empty()
+                                  ? "none: TIFF files are not read (" + f.images.problem + ")"
+                                  : f.images.version + ", for TIFF");
   printFinding("oneTBB", tbbVersion());
   printFinding("glTF", "2.0");
   printFinding("system", f.machine.system);
