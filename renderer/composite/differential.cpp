@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "composite/differential.h"
 
+#include <array>
 #include <utility>
 
 namespace chromeball {
@@ -23,14 +24,33 @@ Place withoutObjects(const CompositeWorlds& worlds, const Place& place, const ve
   return kept;
 }
 
-}  // namespace
+// Paths of one world that are traced together, and the samples that they belong to.
+struct Rest {
+  PathBatch paths;
+  std::array<size_t, PathBatch::kMaxPaths> samples;
+  size_t count = 0;
 
-DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const CameraSample& camera,
-                                        bool behindObjects, PathContext& context) {
+  void add(size_t sample, const CameraSample& camera, const PathState& state,
+           const std::optional<Hit>& hit) {
+    paths.add(camera, state, hit);
+    samples[count++] = sample;
+  }
+  void clear() { paths.clear(), count = 0; }
+};
+
+struct Rests {
+  Rest withObjects, without;
+};
+
+// Estimates the part of sample `i` that both worlds share, and adds the paths from where they
+// differ to `rests`.
+DifferentialSample sharedPart(const CompositeWorlds& worlds, size_t i, const CameraSample& camera,
+                              bool behindObjects, PathContext& context, Rests& rests) {
   const auto& [whole, local, shared] = worlds;
   DifferentialSample sample;
   PathState state = camera.path();
   ++context.counts.camera;
+  camera.start(context.sampler);
   context.sampler.startVertex(0);
   for (std::optional<Hit> hit = camera.hit;;) {
     const bool isInPlace = bool(state.place);  // and has crossed some of its layers
@@ -43,15 +63,12 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
       sample.objectFirst = state.depth == 0;
       PathState withObjects = state;
       if (met) withObjects.throughput *= weight;
-      sample.withObjects += whole.follow(withObjects, hit, context);
+      rests.withObjects.add(i, camera, withObjects, hit);
       if (sample.objectFirst && !behindObjects) return sample;
       state.first = nullptr;
       state.place = isInPlace ? withoutObjects(worlds, state.place, state.ray.direction) : Place();
       context.sampler.startVertex(state.depth);
-      hit = local.nextHit(state, context);
-      const auto records = std::exchange(context.records, nullptr);  // records of `whole` suffice
-      sample.without += local.follow(state, hit, context);
-      context.records = records;
+      rests.without.add(i, camera, state, local.nextHit(state, context));
       return sample;
     }
     whole.estimateDepthCut(state, hit, context);
@@ -78,8 +95,35 @@ DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const Cam
   }
 }
 
-Sample DifferentialIntegrator::sample(const CameraSample& camera, PathContext& context) const {
-  const DifferentialSample s = differentialRadiance(worlds_, camera, behindObjects_, context);
+}  // namespace
+
+void differentialRadiance(const CompositeWorlds& worlds, std::span<const CameraSample> cameras,
+                          bool behindObjects, PathContext& context,
+                          std::span<DifferentialSample> samples) {
+  thread_local Rests rests;
+  auto& [withObjects, without] = rests;
+  withObjects.clear(), without.clear();
+  for (size_t i = 0; i < cameras.size(); ++i)
+    samples[i] = sharedPart(worlds, i, cameras[i], behindObjects, context, rests);
+  withObjects.paths.follow(worlds.whole, context);
+  const auto records = std::exchange(context.records, nullptr);  // those with objects suffice
+  without.paths.follow(worlds.local, context);
+  context.records = records;
+  for (size_t k = 0; k < withObjects.count; ++k)
+    samples[withObjects.samples[k]].withObjects += withObjects.paths.radiance(k);
+  for (size_t k = 0; k < without.count; ++k)
+    samples[without.samples[k]].without += without.paths.radiance(k);
+}
+
+void DifferentialIntegrator::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+                                        std::span<Sample> samples) const {
+  std::array<DifferentialSample, PathBatch::kMaxPaths> found;
+  differentialRadiance(worlds_, cameras, behindObjects_, context, found);
+  for (size_t i = 0; i < cameras.size(); ++i) samples[i] = composed(found[i], cameras[i], context);
+}
+
+Sample DifferentialIntegrator::composed(const DifferentialSample& s, const CameraSample& camera,
+                                        PathContext& context) const {
   const Rgb withObjects = s.both + s.withObjects, without = s.both + s.without;
   context.depthCut.addFound(withObjects);
   for (const Rgb& radiance : {withObjects, without})

@@ -61,12 +61,15 @@ struct DifferentialSample {
   Rgb difference() const { return withObjects - without; }
 };
 
-// `camera.hit` is the hit in the scene with objects. Both worlds use the same random numbers, and
-// vertices are computed once up to the first one that an object affects (by a hit or by a shadow
-// ray), so that `difference()` is exactly 0 where objects have no effect. `behindObjects`: also
-// estimate L_noobj where the camera sees an object.
-DifferentialSample differentialRadiance(const CompositeWorlds& worlds, const CameraSample& camera,
-                                        bool behindObjects, PathContext& context);
+// The samples of camera rays, whose hits are those in the scene with objects. Both worlds use the
+// same random numbers, and vertices are computed once up to the first one that an object affects
+// (by a hit or by a shadow ray), so that `difference()` is exactly 0 where objects have no effect;
+// from there on, the paths of all samples are traced together. `behindObjects`: also estimate
+// L_noobj where the camera sees an object. `samples`: output, as many as cameras, at most
+// PathBatch::kMaxPaths.
+void differentialRadiance(const CompositeWorlds& worlds, std::span<const CameraSample> cameras,
+                          bool behindObjects, PathContext& context,
+                          std::span<DifferentialSample> samples);
 
 // Samples of the composite by the difference formula: the radiance of an object where the camera
 // sees one, otherwise plate + L_obj - L_noobj, which may be negative. The clamp applies to objects
@@ -78,10 +81,19 @@ class DifferentialIntegrator : public Integrator {
   DifferentialIntegrator(const CompositeWorlds& worlds, const Image& plate, bool behindObjects)
       : worlds_(worlds), plate_(plate), behindObjects_(behindObjects) {}
 
-  Sample sample(const CameraSample& camera, PathContext& context) const override;
+  Sample sample(const CameraSample& camera, PathContext& context) const override {
+    Sample found;
+    sampleMany({&camera, 1}, context, {&found, 1});
+    return found;
+  }
+  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+                  std::span<Sample> samples) const override;
   std::vector<Accumulation> layers() const override { return DifferentialFilm::layers(); }
 
  private:
+  Sample composed(const DifferentialSample& found, const CameraSample& camera,
+                  PathContext& context) const;
+
   const CompositeWorlds& worlds_;
   const Image& plate_;
   bool behindObjects_;

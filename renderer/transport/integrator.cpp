@@ -29,21 +29,23 @@ const PathBatch& PathBatch::traced(std::span<const CameraSample> cameras, const 
   thread_local PathBatch batch;
   batch.clear();
   for (const CameraSample& camera : cameras) batch.add(camera);
-  batch.trace(tracer, context);
+  context.counts.camera += cameras.size();
+  batch.follow(tracer, context);
+  for (size_t i = 0; i < cameras.size(); ++i) context.depthCut.addFound(batch.radiance(i));
   return batch;
 }
 
-void PathBatch::add(const CameraSample& camera) {
+void PathBatch::add(const CameraSample& camera, const PathState& state,
+                    const std::optional<Hit>& hit) {
   assert(count_ < kMaxPaths);
-  new (&paths_[count_]) PathState(camera.path());  // in place, for a state is large
+  new (&paths_[count_]) PathState(state);  // in place, for a state is large
   cameras_[count_] = &camera;
-  hits_[count_] = camera.hit;
+  hits_[count_] = hit;
   ++count_;
 }
 
-void PathBatch::trace(const PathTracer& tracer, PathContext& context) {
+void PathBatch::follow(const PathTracer& tracer, PathContext& context) {
   Task task{tracer, context};
-  context.counts.camera += count_;
   active_.size = 0;
   for (size_t i = 0; i < count_; ++i) active_.add(uint32_t(i));
   while (active_.size) {
@@ -54,10 +56,7 @@ void PathBatch::trace(const PathTracer& tracer, PathContext& context) {
     traceShadowRays(task);
     traceNextRays(task);
   }
-  for (size_t i = 0; i < count_; ++i) {
-    context.depthCut.addFound(paths_[i].radiance);
-    context.addRecord(paths_[i].guided, paths_[i].radiance);
-  }
+  for (size_t i = 0; i < count_; ++i) context.addRecord(paths_[i].guided, paths_[i].radiance);
 }
 
 // The sampler continues with the numbers for the path's next vertex, and light groups with its

@@ -98,9 +98,13 @@ class PathBatch {
   static const PathBatch& traced(std::span<const CameraSample> cameras, const PathTracer& tracer,
                                  PathContext& context);
 
-  void add(const CameraSample& camera);  // must outlive the tracing
+  // The path of a camera ray, which must outlive the tracing.
+  void add(const CameraSample& camera) { add(camera, camera.path(), camera.hit); }
+  // The same from a later vertex on. `hit`: of the state's ray.
+  void add(const CameraSample& camera, const PathState& state, const std::optional<Hit>& hit);
 
-  void trace(const PathTracer& tracer, PathContext& context);  // all paths
+  // Traces all paths to their ends, as PathTracer::follow() does.
+  void follow(const PathTracer& tracer, PathContext& context);
 
   // The results, in the order of add().
   const Rgb& radiance(size_t i) const { return paths_[i].radiance; }

@@ -8,7 +8,6 @@ namespace chromeball {
 namespace {
 
 void differential(benchmark::State& state, demo::Finish finish) {
-  constexpr int kTraced = 16;
   const BenchmarkScene& s = BenchmarkScene::get(finish);
   ObjectMask isObject;
   for (const Instance& instance : s.scene.instances)
@@ -21,16 +20,23 @@ void differential(benchmark::State& state, demo::Finish finish) {
   Rgb plainSum(0), withObjects(0);
   for (auto _ : state) {
     const double start = cpuSeconds();
-    plainSum = sumOverImage(camera, kTraced, [&](const Ray& ray, PathContext& context) {
-      const auto hit = worlds.whole.closestHit(ray, context);
-      return worlds.whole.radiance(PathState{ray}, hit, context);
-    });
+    plainSum = sumOverSamples(
+        camera, world.accel, [&](std::span<const CameraSample> cameras, PathContext& context) {
+          const PathBatch& batch = PathBatch::traced(cameras, worlds.whole, context);
+          Rgb sum(0);
+          for (size_t i = 0; i < cameras.size(); ++i) sum += batch.radiance(i);
+          return sum;
+        });
     const double middle = cpuSeconds();
-    withObjects = sumOverImage(camera, kTraced, [&](const Ray& ray, PathContext& context) {
-      const CameraSample sample{.ray = ray, .hit = worlds.whole.closestHit(ray, context)};
-      const DifferentialSample found = differentialRadiance(worlds, sample, false, context);
-      return found.both + found.withObjects;
-    });
+    withObjects = sumOverSamples(camera, world.accel,
+                                 [&](std::span<const CameraSample> cameras, PathContext& context) {
+                                   std::array<DifferentialSample, kTraced> found;
+                                   differentialRadiance(worlds, cameras, false, context, found);
+                                   Rgb sum(0);
+                                   for (size_t i = 0; i < cameras.size(); ++i)
+                                     sum += found[i].both + found[i].withObjects;
+                                   return sum;
+                                 });
     plain += middle - start;
     both += cpuSeconds() - middle;
   }

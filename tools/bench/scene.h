@@ -84,44 +84,41 @@ Rgb sumOverPixels(const Camera& camera, int samples, Radiance&& radiance, RayLog
   return sum;
 }
 
-// The same with radiance(ray, context) for every sample.
+inline constexpr int kTraced = PathBatch::kMaxPaths;  // samples per pixel of the following
+
+// Calls radiance(cameras, context) for the samples of every pixel, with their hits, on this thread;
+// `log` may be null.
 template <class Radiance>
-Rgb sumOverImage(const Camera& camera, int samples, Radiance&& radiance) {
-  return sumOverPixels(camera, samples, [&](std::span<const Ray> rays, PathContext& context) {
-    Rgb sum(0);
-    for (size_t i = 0; i < rays.size(); ++i) {
-      context.sampler.startSample(uint32_t(i));
-      sum += radiance(rays[i], context);
-    }
-    return sum;
-  });
-}
-
-inline constexpr int kTraced = PathBatch::kMaxPaths;  // samples per pixel of traceImage()
-
-// Traces the paths of the whole image on this thread, as a render does; `log` may be null.
-inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
-  const PathTracer tracer = s.tracer();
-  const auto batch = std::make_unique<PathBatch>();
+Rgb sumOverSamples(const Camera& camera, const Accel& accel, Radiance&& radiance,
+                   RayLog* log = nullptr) {
   std::array<CameraSample, kTraced> cameras;
   std::array<std::optional<Hit>, kTraced> hits;
   const std::array<uint32_t, kTraced> keys{};
   return sumOverPixels(
-      s.scene.cameras.front(), kTraced,
+      camera, kTraced,
       [&](std::span<const Ray> rays, PathContext& context) {
-        s.world.accel.intersect(rays, keys, Accel::Coherence::High, hits);
-        batch->clear();
+        accel.intersect(rays, keys, Accel::Coherence::High, hits);
         for (size_t i = 0; i < rays.size(); ++i) {
           if (log) log->rays.push_back({rays[i], false});
           cameras[i] = {.pixel = &context.sampler.pixel(),
                         .index = uint32_t(i),
                         .ray = rays[i],
                         .hit = hits[i]};
-          batch->add(cameras[i]);
         }
-        batch->trace(tracer, context);
+        return radiance(std::span<const CameraSample>(cameras), context);
+      },
+      log);
+}
+
+// Traces the paths of the whole image, as a render does.
+inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
+  const PathTracer tracer = s.tracer();
+  return sumOverSamples(
+      s.scene.cameras.front(), s.world.accel,
+      [&](std::span<const CameraSample> cameras, PathContext& context) {
+        const PathBatch& batch = PathBatch::traced(cameras, tracer, context);
         Rgb sum(0);
-        for (size_t i = 0; i < rays.size(); ++i) sum += batch->radiance(i);
+        for (size_t i = 0; i < cameras.size(); ++i) sum += batch.radiance(i);
         return sum;
       },
       log);
