@@ -28,7 +28,7 @@ MODELS = """
     Suzanne TextureCoordinateTest TextureSettingsTest TextureTransformTest
     TransmissionTest TwoSidedPlane UnlitTest WaterBottle
     interiors/apartment interiors/glass_table interiors/home_theater interiors/living_room""".split()
-COLUMNS, SMALLER = 8, 5  # pictures in a row; pixels of a render along the side of one of the sheet
+COLUMNS, CELL = 8, (160, 120)
 
 
 def render(model, probe, quality, out):
@@ -38,16 +38,20 @@ def render(model, probe, quality, out):
     print(f"{time.monotonic() - start:5.1f} s  {model.name}, {probe.stem}\n{run.stderr}", end="", flush=True)
     if run.returncode != 0:
         sys.exit(1)
-    return smaller(read_png(out))
+    return fitted(read_png(out))
 
 
-def smaller(rows):
-    """Each pixel the mean of SMALLER x SMALLER."""
-    def mean(y, x):
-        pixels = [pixel for row in rows[y:y + SMALLER] for pixel in row[x:x + SMALLER]]
-        return tuple(round(sum(channel) / len(pixels)) for channel in zip(*pixels))
+def fitted(rows):
+    """In the middle of a cell, each pixel the mean of those that it covers."""
+    scale = max(len(rows[0]) / CELL[0], len(rows) / CELL[1])
+    left, top = (round(CELL[i] - side / scale) // 2 for i, side in enumerate((len(rows[0]), len(rows))))
 
-    return [[mean(y, x) for x in range(0, len(rows[0]), SMALLER)] for y in range(0, len(rows), SMALLER)]
+    def mean(x, y):
+        x0, x1, y0, y1 = (round(scale * v) for v in (x - left, x - left + 1, y - top, y - top + 1))
+        pixels = [pixel for row in rows[max(y0, 0):max(y1, 0)] for pixel in row[max(x0, 0):max(x1, 0)]]
+        return tuple(round(sum(channel) / len(pixels)) for channel in zip(*pixels)) if pixels else (40, 40, 40)
+
+    return [[mean(x, y) for x in range(CELL[0])] for y in range(CELL[1])]
 
 
 def main(data, out, quality="draft"):
@@ -61,7 +65,7 @@ def main(data, out, quality="draft"):
             pictures.append(render(files[0], probe, quality, pathlib.Path(folder) / "picture.png"))
     bands = [pictures[i:i + COLUMNS] for i in range(0, len(pictures), COLUMNS)]
     jpeg.write(out, [[pixel for picture in band for pixel in picture[y]] for band in bands
-                     for y in range(len(band[0]))])
+                     for y in range(CELL[1])])
 
 
 if __name__ == "__main__":
