@@ -122,7 +122,7 @@ TEST(SlowLightGroups, AddUpToThePicture) {
 TEST(LightGroups, HaveANameForEachSource) {
   const LitScene scene;
   EXPECT_EQ(groupsOf(render(scene, {"--aov", "light_groups"})),
-            (Strings{"a_b", "lamp", "node1", "rest", "sun", "suns", "unlit"}));
+            (Strings{"a_b", "lamp", "node1", "probe", "probe.suns", "sun", "unlit"}));
   const Strings fitted =
       groupsOf(render(scene, {"--aov", "light_groups", "--strategy", "median-cut:2"}));
   EXPECT_EQ(fitted,
@@ -211,7 +211,7 @@ TEST(LightGroups, NamesAreUniqueAndShort) {
   scene.write("names.toml", lamps);
   Strings names = groupsOf(render(scene, {"--aov", "light_groups"}, "names.toml"));
   const std::string kept(200, 'x');
-  EXPECT_EQ(names, (Strings{"a", "a_2", "a_3", "a_4", "node1", "rest", "suns", "unlit", kept,
+  EXPECT_EQ(names, (Strings{"a", "a_2", "a_3", "a_4", "node1", "probe", "probe.suns", "unlit", kept,
                             kept + "_2"}));
 }
 
@@ -306,7 +306,7 @@ TEST(LightGroups, RefuseWhatTheyCannotDo) {
   expectError(relight("lamp="), "--gain lamp");
   expectError(relight("lamp=1e39"), "--gain lamp");
   expectError(relight("lamp=-1"), "negative");
-  expectError(relight("rest=3e38,lamp=3e38,sun=3e38"), "largest float");
+  expectError(relight("probe=3e38,lamp=3e38,sun=3e38"), "largest float");
   expectError({"image", "relight", scene / "sky.exr", "--gain", "a=1", "-o", scene / "r.exr"},
               "no light groups");
   EXPECT_FALSE(std::filesystem::exists(scene / "r.exr"));

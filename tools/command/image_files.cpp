@@ -22,7 +22,7 @@ void warnOfLostMapping(const std::string& file, const Image& map, Mapping mappin
   // A scene file takes lenses only from files that name them.
   const bool isLens = mapping.kind() == Mapping::FisheyeDisc;
   warn(
-      "{}: has no place for its mapping, {}, and will be taken for {}: give `--from "
+      "{}: has no place for its mapping, {}, and will be taken for {}: give `--probe-mapping "
       "{}`{} where it is read, or write an .exr or .hdr",
       file, mappingName(mapping), mappingName(detected.mapping), mappingName(mapping),
       isLens ? "" : " or `[probe] mapping`");
