@@ -178,7 +178,8 @@ TEST(CommandNames, WordsOfOtherProgramsAreUnderstoodInOptionsAndKeys) {
   expectOption("--sample_count", "did you mean `--samples N`?");
   expectOption("--rotaton", "did you mean `--probe-rotation`?");
   expectError({"probe", "convert", "--mappin", "a"}, "did you mean `--probe-mapping`?");
-  expectError({"probe", "convert", "--material", "a"}, "unknown option `--material`; known: ");
+  expectError({"probe", "convert", "--wattage", "a"},
+              "unknown option `--wattage`; known: --help, ");
 }
 
 }  // namespace

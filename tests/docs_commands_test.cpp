@@ -39,7 +39,7 @@ Words wordsOf(const std::string& line) {
     }
   }
   const auto end = std::ranges::find_if(
-      words, [](const std::string& w) { return w == "&&" || w == "|" || w == "#" || w == "&"; });
+      words, [](const std::string& w) { return w == "&&" || w == "|" || w == "#" || w == ">"; });
   words.erase(end, words.end());
   for (std::string& w : words) w = replaceMatches(w, "\\$[a-z]+", "1");
   return words;

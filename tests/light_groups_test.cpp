@@ -238,7 +238,7 @@ TEST(LightGroups, ShadowMatteOfAPlane) {
   const Rgb matte = meanColor(layer(file, "shadow.key_0"));
   const dvec3 ambient = kPiD * dvec3(0.2, 0.3, 0.5), light = 0.8 * dvec3(1, 2, 3);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(matte[k], ambient[k] / (ambient[k] + light[k]), 2e-3);
-  const Rgb rest = meanColor(layer(file, "shadow.rest"));
+  const Rgb rest = meanColor(layer(file, "shadow.probe"));
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(rest[k], light[k] / (ambient[k] + light[k]), 2e-3);
 }
 
@@ -289,9 +289,9 @@ TEST(LightGroups, RefuseWhatTheyCannotDo) {
   for (const Strings& option : {Strings{"--bent"},
                                 {"--suns"},
                                 {"--add", scene / "o.exr"},
-                                {"--rotation", "30"},
-                                {"--scale", "3"},
-                                {"--mapping", "angular"}}) {
+                                {"--probe-rotation", "30"},
+                                {"--probe-scale", "3"},
+                                {"--probe-mapping", "angular"}}) {
     Strings words = relight("sun=2");
     words.insert(words.end(), option.begin(), option.end());
     expectError(words, option.front() + ": has no effect with --gain");
