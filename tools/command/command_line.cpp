@@ -107,12 +107,15 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   if (unknown.empty()) return fmt::format("{}; {}", error.what(), help);
 
   const std::string& word = unknown.front();
+  const auto owner = std::ranges::find_if(  // `prob info`: it is none of `info`
+      commands, [](const CLI::App* named) { return !named->remaining(false).empty(); });
+  const CLI::App& where = owner == commands.end() ? command : **owner;
   if (word.starts_with("-")) {
     const std::string option = word.substr(0, word.find('='));
-    return fmt::format("unknown option `{}`; {}", option, hintOn(option, command));
+    return fmt::format("unknown option `{}`; {}", option, hintOn(option, where));
   }
   std::vector<std::string> names;
-  for (const CLI::App* subcommand : command.get_subcommands(nullptr))
+  for (const CLI::App* subcommand : where.get_subcommands(nullptr))
     names.push_back(subcommand->get_name());
   return fmt::format("unknown {} `{}`; {}", names.empty() ? "argument" : "command", word,
                      names.empty() ? help : didYouMean(word, {names.begin(), names.end()}));
