@@ -144,7 +144,7 @@ TEST(SlowCommandAssemble, Errors) {
   fails({"--ball-ior", "1,0"}, "--ball-ior: 1,0 should be");
   fails({"--schlick"}, "--schlick: needs --reflectivity");
   fails({"--camera-disc", "91"}, "--camera-disc: 91");
-  fails({"--from", "angular"}, "--from: `angular` should be");
+  fails({"--from", "angular"}, "--probe-mapping: `angular` should be");
   fails({"--from", "fisheye:400"}, "field of view `400`");
   fails({"--from", "fisheye:180:equi"}, "unknown projection `equi`");
   fails({"--from", "fisheye", "--distance", "32"}, "--distance: is for mirror balls");
@@ -289,7 +289,7 @@ TEST(SlowCommandConvert, ReadsAndWritesFisheyes) {
   expectError({"probe", "convert", map, disc, "--to", "fisheye:20"},
               "--to: the field of view `20`");
   expectError({"probe", "convert", map, disc, "--from", "fisheye", "--to", "lat-long"},
-              "--from: an image of 256 x 128 texels cannot be fisheye");
+              "--probe-mapping: an image of 256 x 128 texels cannot be fisheye");
 }
 
 TEST(SlowCommandReflectivity, PrintsThatOfABall) {

@@ -129,7 +129,7 @@ TEST_F(CommandBake, OtherOutputs) {
   const auto k = jsonOfFile(folder_ / "k.gltf");
   EXPECT_FALSE(k.contains("images"));
   EXPECT_TRUE(k["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_1"));
-  bake("r.glb", {"--what", "radiance", "--scale", "4"});
+  bake("r.glb", {"--what", "radiance", "--white", "4"});
 }
 
 // Tangents that are not those of the UVs, on a mirrored node; and a texture that shows a line.
@@ -217,7 +217,7 @@ TEST_F(CommandBake, RefusesBadInput) {
   refuses({"--to", "vertices", "--size", "32"}, "is for lightmaps");
   refuses({"--to", "vertices", "--denoise"}, ": --denoise: is for lightmaps");
   refuses({"--to", "vertices", "--no-denoise"}, ": --no-denoise: is for lightmaps");
-  refuses({"--scale", "-1"}, "--scale");
+  refuses({"--scale", "-1"}, "--white");
   refuses({"--samples", "1"}, "--samples");
   refuses({"--size", "16384", "--memory", "1"}, "limit");
   expectError({"bake", folder_ / "none.glb", "-o", folder_ / "refused.glb"}, "none.glb");

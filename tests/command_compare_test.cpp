@@ -157,8 +157,6 @@ TEST_F(SlowCommandCompare, writesAllResultsAndContinues) {
   ASSERT_EQ(runCommand(command(kSmall)).status, 0);
   EXPECT_EQ(renders(), before);
   EXPECT_EQ(results()["strategies"], first["strategies"]);
-  ASSERT_EQ(runCommand(command(with(kSmall, {"--repeats", "4"}))).status, 2)
-      << "an option given twice";
   std::vector<std::string> more = kSmall;
   more[5] = "4";
   ASSERT_EQ(runCommand(command(more)).status, 0);
@@ -321,7 +319,7 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
   };
   ASSERT_EQ(runCommand(words("", {})).status, 0);
 
-  const std::string help = runCommand({"compare", "--help"}).out;
+  const std::string help = runCommand({"compare", "--help", "all"}).out;
   for (const Captures& option : allMatches(help, "--([a-z-]+)")) {
     const std::string name = option[1];
     if (irrelevant.contains(name)) continue;

@@ -288,7 +288,7 @@ TEST_F(CommandIntegrators, RelightByAProbe) {
   expectError(relight({}), "--gain, --probe");
   expectError(relight({"--probe", probe, "--gain", "a=1"}), "--gain, --probe");
   expectError(relight({"--probe", folder_ / "none.exr"}), "none.exr");
-  expectError(relight({"--probe", probe, "--scale", "-1"}), "--scale");
+  expectError(relight({"--probe", probe, "--scale", "-1"}), "--probe-scale");
   expectError(relight({"--probe", probe, "--exposure", "nan"}), "--exposure");
   expectError(relight({"--probe", probe, "--exposure", "3"}), "--exposure: is for a .png");
   expectError(relight({"--probe", probe, "--tonemap", "aces"}), "--tonemap: is for a .png");

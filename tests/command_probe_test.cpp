@@ -156,7 +156,8 @@ TEST(SlowCommandProbe, BadInputIsRejected) {
   expectError({"probe", "convert", in, out, "--to", "auto", "--size", "8x4"}, "--to");
   expectError({"probe", "convert", in, out, "--to", "angular", "--size", "8x4"}, "square");
   expectError({"probe", "convert", in, out, "--to", "lat-long", "--size", "8"}, "--size");
-  expectError({"probe", "convert", in, out, "--to", "lat-long", "--rotation", "nan"}, "--rotation");
+  expectError({"probe", "convert", in, out, "--to", "lat-long", "--rotation", "nan"},
+              "--probe-rotation");
   expectError({"probe", "convert", in, folder / "b.bmp", "--to", "lat-long"}, ".exr");
   expectError({"probe", "convert", in, folder / "no/b.exr", "--to", "lat-long"}, "no folder");
   expectError({"probe", "synth", "cloudy", out}, "known");

@@ -271,16 +271,16 @@ TEST_F(CommandRelight, RefusesBadOptions) {
   refusesOptions({"--probe", probe}, "--probe: give one");
   refusesOptions({"--reflectance-function", "1,1"}, "give one of the two");
   refusesOptions({"--images", "."}, "are in place of a light stage");
-  refusesOptions({"--scale", "-1"}, "--scale");
-  refusesOptions({"--rotation", "x"}, "--rotation");
+  refusesOptions({"--probe-scale", "-1"}, "--probe-scale");
+  refusesOptions({"--probe-rotation", "x"}, "--probe-rotation");
   refusesOptions({"--exposure", "nan"}, "--exposure: must be a finite number");
   refusesOptions({"--exposure", "1"}, "--exposure: is for a .png");
   refusesOptions({"--tonemap", "aces"}, "--tonemap: is for a .png");
   refusesOptions({"--irradiance", "2"}, "--irradiance: is for --images");
   for (const Strings& option : {Strings{"--keep", "10"},
                                 {"--keep-light", "10"},
-                                {"--scale", "2"},
-                                {"--rotation", "20"},
+                                {"--probe-scale", "2"},
+                                {"--probe-rotation", "20"},
                                 {"--domain", "pixel"}})
     refuses({"relight", stage, "--reflectance-function", "1,1", option[0], option[1]},
             option[0] + ": has no effect with --reflectance-function");

@@ -528,7 +528,7 @@ TEST(SlowCommandRender, WithoutAProbeOnlyEmissionLights) {
 
 // The command-line options recorded in an EXR header.
 Words optionsIn(const ImageFile& file) {
-  const std::string help = runCommand({"render", "--help"}).out;
+  const std::string help = runCommand({"render", "--help", "all"}).out;
   const auto limit = file.metadata.find("noise-limit");
   Words options;
   if (limit != file.metadata.end())

@@ -164,14 +164,15 @@ TEST_F(Turned, WrongRotationsAndScalesAreExplained) {
   file("rotation_keys = [[0, 1], [1, [1, 2]]]\n", "`rotation_keys` must be one angle, three");
   file("rotation_keys = [[0, [1, 1, 1, 1]]]\n", "scene.toml:8: the quaternion (1, 1, 1, 1) has");
   file("rotation_keys = []\n", "`rotation_keys` must be ");
-  expectError({"probe", "convert", probe_, path("x.exr"), "--to", "lat-long", "--rotation", "1,2"},
-              "--rotation: `1,2` should be YAW or YAW,PITCH,ROLL in degrees, or a quaternion");
+  expectError(
+      {"probe", "convert", probe_, path("x.exr"), "--to", "lat-long", "--rotation", "1,2"},
+      "--probe-rotation: `1,2` should be YAW or YAW,PITCH,ROLL in degrees, or a quaternion");
   expectError({"probe", "convert", probe_, path("x.exr"), "--to", "lat-long", "--scale", "1e39"},
-              "--scale: 1e39 should be not negative: 0, or 1.4e-45 to 3.4e38");
+              "--probe-scale: 1e39 should be not negative: 0, or 1.4e-45 to 3.4e38");
   expectError({"probe", "convert", probe_, path("x.exr"), "--to", "lat-long", "--scale", "3e38"},
               "a texel times the scale exceeds the range of a float");
   expectError({"lights", sky_, "--suggest", "1", "--rotation", "5", "-o", path("l.json")},
-              "--rotation: polygons are places in the probe's image; it turns lights");
+              "--probe-rotation: polygons are places in the probe's image; it turns lights");
 }
 
 TEST_F(Turned, AlignPrintsTheRotationAndWritesTheTurnedProbe) {

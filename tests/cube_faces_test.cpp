@@ -123,7 +123,7 @@ TEST(CubeFaces, AFolderThatIsNoCubeMapIsRefused) {
   refuses("ny.exr: is 16 x 16, but px.exr is 12 x 12");
   writeCube(folder);
   expectError({"probe", "info", folderOf(folder), "--mapping", "angular"},
-              "--mapping: " + folderOf(folder) + " is a folder with the faces of a cube map");
+              "--probe-mapping: " + folderOf(folder) + " is a folder with the faces of a cube map");
   writeImage(folder / "PX.hdr", constantProbe({kSide, kSide}, Rgb(1)));
   refuses("PX.hdr and px.exr are the same face");
   std::filesystem::remove(folder / "PX.hdr");

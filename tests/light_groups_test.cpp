@@ -122,7 +122,7 @@ TEST(SlowLightGroups, AddUpToThePicture) {
 TEST(LightGroups, HaveANameForEachSource) {
   const LitScene scene;
   EXPECT_EQ(groupsOf(render(scene, {"--aov", "light_groups"})),
-            (Strings{"a_b", "lamp", "node1", "rest", "sun", "suns", "unlit"}));
+            (Strings{"a_b", "lamp", "node1", "probe", "probe.suns", "sun", "unlit"}));
   const Strings fitted =
       groupsOf(render(scene, {"--aov", "light_groups", "--strategy", "median-cut:2"}));
   EXPECT_EQ(fitted,
@@ -211,7 +211,7 @@ TEST(LightGroups, NamesAreUniqueAndShort) {
   scene.write("names.toml", lamps);
   Strings names = groupsOf(render(scene, {"--aov", "light_groups"}, "names.toml"));
   const std::string kept(200, 'x');
-  EXPECT_EQ(names, (Strings{"a", "a_2", "a_3", "a_4", "node1", "rest", "suns", "unlit", kept,
+  EXPECT_EQ(names, (Strings{"a", "a_2", "a_3", "a_4", "node1", "probe", "probe.suns", "unlit", kept,
                             kept + "_2"}));
 }
 
@@ -238,7 +238,7 @@ TEST(LightGroups, ShadowMatteOfAPlane) {
   const Rgb matte = meanColor(layer(file, "shadow.key_0"));
   const dvec3 ambient = kPiD * dvec3(0.2, 0.3, 0.5), light = 0.8 * dvec3(1, 2, 3);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(matte[k], ambient[k] / (ambient[k] + light[k]), 2e-3);
-  const Rgb rest = meanColor(layer(file, "shadow.rest"));
+  const Rgb rest = meanColor(layer(file, "shadow.probe"));
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(rest[k], light[k] / (ambient[k] + light[k]), 2e-3);
 }
 
@@ -289,9 +289,9 @@ TEST(LightGroups, RefuseWhatTheyCannotDo) {
   for (const Strings& option : {Strings{"--bent"},
                                 {"--suns"},
                                 {"--add", scene / "o.exr"},
-                                {"--rotation", "30"},
-                                {"--scale", "3"},
-                                {"--mapping", "angular"}}) {
+                                {"--probe-rotation", "30"},
+                                {"--probe-scale", "3"},
+                                {"--probe-mapping", "angular"}}) {
     Strings words = relight("sun=2");
     words.insert(words.end(), option.begin(), option.end());
     expectError(words, option.front() + ": has no effect with --gain");
@@ -306,7 +306,7 @@ TEST(LightGroups, RefuseWhatTheyCannotDo) {
   expectError(relight("lamp="), "--gain lamp");
   expectError(relight("lamp=1e39"), "--gain lamp");
   expectError(relight("lamp=-1"), "negative");
-  expectError(relight("rest=3e38,lamp=3e38,sun=3e38"), "largest float");
+  expectError(relight("probe=3e38,lamp=3e38,sun=3e38"), "largest float");
   expectError({"image", "relight", scene / "sky.exr", "--gain", "a=1", "-o", scene / "r.exr"},
               "no light groups");
   EXPECT_FALSE(std::filesystem::exists(scene / "r.exr"));

@@ -31,7 +31,7 @@ struct Names {
 
 void readHelp(const Words& command, std::map<std::string, Names>& commands) {
   Words arguments = command;
-  arguments.push_back("--help");
+  arguments.insert(arguments.end(), {"--help", "all"});
   std::istringstream help(runCommand(arguments).out);
   Names& names = commands[joined(command)];
   std::string section;

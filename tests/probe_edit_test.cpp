@@ -288,15 +288,16 @@ TEST(SlowCommandEdit, BadInputIsRejected) {
   expect({"--clip", "nan"}, "--clip");
   expect({"--clip", "1", "--clip-stops", "2"}, "--clip");
   expect({"--clip-stops", "many"}, "--clip-stops");
-  expect({"--scale", "1e300"}, "--scale");
-  expect({"--scale", "1e39"}, "--scale: 1e39 should be not negative: 0, or 1.4e-45 to 3.4e38");
+  expect({"--scale", "1e300"}, "--probe-scale");
+  expect({"--scale", "1e39"},
+         "--probe-scale: 1e39 should be not negative: 0, or 1.4e-45 to 3.4e38");
   expect({"--scale", "1,1,1e-46"}, "1.4e-45 to 3.4e38");
-  expect({"--scale", "1,2"}, "--scale: `1,2` should be one number, or three");
+  expect({"--scale", "1,2"}, "--probe-scale: `1,2` should be one number, or three");
   expect({"--clip", "1e-46"}, "--clip: 1e-46 should be above 0: 1.4e-45 to 3.4e38");
   expect({"--clip-stops", "-300"}, "--clip-stops: ");
   expect({"--region", "1e300,0,30", "--gain", "2"}, "--region: the azimuth 1e+300");
   expect({"--scale", "1e30"}, "exceeds the range of a float");
-  expect({"--scale", "1,2,3,4"}, "--scale");
+  expect({"--scale", "1,2,3,4"}, "--probe-scale");
   expect({"--region", "0,0,30"}, "--gain");
   expect({"--gain", "2"}, "--region");
   expect({"--region", "0,91,30", "--gain", "2"}, "elevation");

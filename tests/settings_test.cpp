@@ -335,7 +335,7 @@ TEST(Settings, TheReferencePageIsUpToDate) {
 }
 
 TEST(CommandSettings, HelpShowsEveryOptionWithItsDefaultAndNames) {
-  std::string help = runCommand({"render", "--help"}).out;
+  std::string help = runCommand({"render", "--help", "all"}).out;
   const auto isSpace = [](char a, char b) { return a == ' ' && b == ' '; };
   std::replace(help.begin(), help.end(), '\n', ' ');
   help.erase(std::unique(help.begin(), help.end(), isSpace), help.end());

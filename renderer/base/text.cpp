@@ -141,7 +141,7 @@ std::string_view nearestName(std::string_view name, const std::vector<std::strin
   for (std::string_view candidate : known) {
     const auto [shorter, longer] = std::minmax({name.size(), candidate.size()});
     if ((longer - shorter) * 2 > longer) continue;  // the distance is at least the difference
-    const int distance = editDistance(name, candidate);
+    const int distance = editDistance(lowerCase(name), lowerCase(candidate));
     if (size_t(distance) * 2 > longer) continue;
     if (!nearest.empty() && distance >= nearestDistance) continue;
     nearest = candidate;

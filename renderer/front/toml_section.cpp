@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "front/settings.h"
+#include "front/synonyms.h"
 
 namespace chromeball {
 namespace {
@@ -143,12 +144,40 @@ Section::Section(const std::string& file, const toml::table& table,
   checkKeys(keys);
 }
 
+namespace {
+
+std::string headingOf(std::string_view name) {
+  for (const SettingSection& section : settingSections())
+    if (section.name == name && section.heading.starts_with('['))
+      return std::string(section.heading);
+  return fmt::format("[[{}]]", name);  // [[model]]
+}
+
+// What the unknown key of a section may mean: one of this section, or of another.
+std::string hintOn(std::string_view key, std::string_view section,
+                   const std::vector<std::string_view>& known) {
+  const bool isTop = section.empty() && std::ranges::count(known, "render") > 0;
+  if (!isTop && (section.empty() || headingOf(section).starts_with("[[")))
+    return didYouMean(key, known);  // a list, whose words have meanings of their own
+  const Setting* meant = settingCalled(key);
+  const bool isKey = meant && !meant->key.empty();
+  if (isKey && meant->section == section) return fmt::format("did you mean `{}`?", meant->key);
+  if (isKey) return fmt::format("did you mean `{}` in {}?", meant->key, headingOf(meant->section));
+  if (const auto place = placeOf(key); !place.empty()) return std::string(place);
+  const auto& table = settingTable();
+  const auto same = std::ranges::find(table, key, &Setting::key);
+  if (same == table.end() || !nearestName(key, known).empty()) return didYouMean(key, known);
+  return fmt::format("did you mean `{}` in {}?", key, headingOf(same->section));
+}
+
+}  // namespace
+
 void Section::checkKeys(const std::vector<std::string_view>& known) const {
   for (const auto& [key, node] : table_)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       failAt(fmt::format("{}:{}", file_, key.source().begin.line), "unknown key `{}`{}; {}",
              printableName(key.str()), name_.empty() ? "" : " in " + heading(),
-             didYouMean(key.str(), known));
+             hintOn(key.str(), name_, known));
 }
 
 Entry Section::required(std::string_view key) const {
@@ -159,12 +188,7 @@ Entry Section::required(std::string_view key) const {
   return entry;
 }
 
-std::string Section::heading() const {
-  for (const SettingSection& section : settingSections())
-    if (section.name == name_ && section.heading.starts_with('['))
-      return std::string(section.heading);
-  return "[[" + name_ + "]]";  // [[model]]
-}
+std::string Section::heading() const { return headingOf(name_); }
 
 Section Section::section(std::string_view key) const {
   static const toml::table kEmpty;

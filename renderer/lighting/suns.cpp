@@ -63,8 +63,8 @@ Rgb Suns::background(const vec3&, const vec3& wi) const {
 }
 
 std::vector<std::string> Suns::groups() const {
-  if (discs_.empty()) return {"rest"};
-  return {"suns", "rest"};
+  if (discs_.empty()) return {"probe"};
+  return {kSunsGroup, "probe"};
 }
 
 void Suns::splitEscaped(const LightPoint&, const vec3& wi, std::span<Rgb> radiances) const {
@@ -86,8 +86,8 @@ SplitProbe::SplitProbe(std::unique_ptr<LightSource> strategy, const SunExtractio
       rest_(extraction.remainder, rotation) {}
 
 std::vector<std::string> SplitProbe::groups() const {
-  if (!hasSuns_) return {"rest"};
-  return {"suns", "rest"};
+  if (!hasSuns_) return {"probe"};
+  return {kSunsGroup, "probe"};
 }
 
 // The rest is at most the whole: rounding leaves no negative suns.

@@ -19,6 +19,9 @@
 
 namespace chromeball {
 
+// The light group of a probe's suns; that of the rest of the probe is "probe".
+inline constexpr const char* kSunsGroup = "probe.suns";
+
 // Distant discs of constant radiance, such as suns.
 
 // Samples one direction in each disc, uniform over its solid angle 2 pi (1 - cos(angle / 2)). From

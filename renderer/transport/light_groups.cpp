@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "lighting/suns.h"
+
 namespace chromeball {
 namespace {
 
@@ -35,8 +37,9 @@ LightGroups::LightGroups(const World& world, const LightSource& lighting)
 
 int LightGroups::add(const std::string& name) {
   std::string base = name.empty() ? "light" : shortened(name);
-  for (char& c : base)
-    if (c == '.' || c == ',' || c == '=' || uint8_t(c) <= ' ' || c == 127) c = '_';
+  if (base != kSunsGroup)  // a layer below the probe's own
+    for (char& c : base)
+      if (c == '.' || c == ',' || c == '=' || uint8_t(c) <= ' ' || c == 127) c = '_';
   std::string unique = base;
   for (int& count = taken_[base]; ++count > 1;) {
     unique = base + "_" + std::to_string(count);

@@ -20,7 +20,8 @@ class LightGroups {
  public:
   LightGroups(const World& world, const LightSource& lighting);
 
-  // Unique; without the characters that separate layers and gains: . , = and spaces.
+  // Unique; without the characters that separate layers and gains: . , = and spaces, but for the
+  // point of kSunsGroup.
   const std::vector<std::string>& names() const { return names_; }
 
   // The groups of the probe's strategy if `source` is null, else of one of World::sources: indices

@@ -189,7 +189,7 @@ void addAssembleOptions(Command command, AssembleArguments& arguments) {
                  "operator; one for all, or one for each")
       .onePerName();
   addBallOptions(command, arguments);
-  command.addOption("--from", arguments.from,
+  command.addOption("--probe-mapping", arguments.from,
                     "mirror-ball, or fisheye[:FOV[:PROJECTION]]: 180 degrees; equidistant, "
                     "equisolid, orthographic or stereographic");
   command.addFlag("--keep-exposure", arguments.keepExposure,
@@ -230,8 +230,9 @@ std::shared_ptr<const CaptureOptics> parseOptics(const AssembleArguments& argume
     return std::make_shared<BallOptics>(distance, parseReflectance(arguments), cameraDisc);
   }
   if (!namesFisheye(arguments.from))
-    throwInput("--from: `{}` should be mirror-ball or fisheye[:FOV[:PROJECTION]]", arguments.from);
-  const Fisheye lens = parseFisheye(arguments.from, "--from");
+    throwInput("--probe-mapping: `{}` should be mirror-ball or fisheye[:FOV[:PROJECTION]]",
+               arguments.from);
+  const Fisheye lens = parseFisheye(arguments.from, "--probe-mapping");
   command.refuse({"--distance", "--reflectivity", "--ball-ior", "--schlick", "--camera-disc"},
                  "is for mirror balls, not for a fisheye lens");
   return std::make_shared<FisheyeOptics>(lens);

@@ -67,9 +67,9 @@ void check(const BakeOptions& a, const Command& command) {
   if (a.size && a.texel) throwInput("--texel: excludes --size; give one");
   if (a.texel && !(*a.texel > 0 && std::isfinite(*a.texel)))
     throwInput("--texel: should be a length above 0 (metres)");
-  if (a.scale && !isPositiveFloat(*a.scale)) throwInput("--scale: should be {}", kPositiveFloats);
+  if (a.scale && !isPositiveFloat(*a.scale)) throwInput("--white: should be {}", kPositiveFloats);
   if (a.scale && (what == BakedLight::AmbientOcclusion || a.keepsMaterials))
-    throwInput("--scale: is of colours that the file shows without light; leave it out");
+    throwInput("--white: is of colours that the file shows without light; leave it out");
   if (a.toVertices())
     command.refuse({"--size", "--padding", "--texel", "--denoise", "--no-denoise"},
                    "is for lightmaps; leave it out with --to vertices");
@@ -274,6 +274,9 @@ void run(const BakeOptions& options, const Command& command) {
 void addBakeCommand(Command app) {
   auto [command, a] = app.addCommand<BakeOptions>(
       "bake", "Bake light into a lightmap or vertex colours, for real-time viewers", run);
+  command.addOption("--white,--scale", a.scale,
+                    "the light that the file's white stands for; by default a power of two that "
+                    "clips only what emits");
   addSceneOptions(command, a, SceneCommand::Bake);
   command.addRequired(
       "-o,--output", a.output,
@@ -285,9 +288,6 @@ void addBakeCommand(Command app) {
                     "of the lightmap, in texels along an edge, up to 16384; 1024 by default");
   command.addOption("--texel", a.texel, "in place of --size: metres along the edge of a texel");
   command.addOption("--padding", a.padding, "texels around each chart; 4 by default");
-  command.addOption("--scale", a.scale,
-                    "the light that the file's white stands for; by default a power of two that "
-                    "clips only what emits");
   Option denoises =
       command.addFlag("--denoise", a.denoises, "remove noise from lightmaps: the default");
   command.addFlag("--no-denoise", a.keepsNoise, "do not").excludes(denoises);

@@ -92,7 +92,8 @@ void addExif(const std::string& plate, size_t points, CameraKnowledge& known) {
   if (known.focalLength || points >= fewestPoints(known)) return;
   const auto focal35 = readExif(plate).focalLength35;
   if (!focal35) return;
-  note("{}: its EXIF tells a focal length of {:g} mm on 35 mm film", plate, *focal35);
+  print(Messages{
+      makeNote("{}: its EXIF tells a focal length of {:g} mm on 35 mm film", plate, *focal35)});
   known.focalLength = focalLengthOf35mm(known.size, *focal35);
 }
 
@@ -242,7 +243,7 @@ void run(const CameraSolveArguments& a, const Command& command) {
   if (a.json)
     printJson(toJson(solution));
   else
-    for (const std::string& line : lines) fmt::print("{}\n", line);
+    for (const std::string& line : lines) say("{}\n", line);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "help.h"
 
 namespace chromeball {
 namespace {
@@ -41,6 +42,29 @@ bool takeWords(const CLI::results_t& words, std::vector<Number>& numbers) {
   numbers.clear();
   return std::ranges::all_of(
       words, [&](const std::string& word) { return takeWord(word, numbers.emplace_back()); });
+}
+
+// Names by which all commands take an option too that has one name in the help.
+struct Synonym {
+  std::string_view option, other;
+};
+constexpr Synonym kSynonyms[] = {{"--probe-mapping", "--mapping"},
+                                 {"--probe-mapping", "--from"},
+                                 {"--probe-rotation", "--rotation"},
+                                 {"--probe-scale", "--scale"}};
+
+std::string withSynonyms(const CLI::App& app, const std::string& name) {
+  std::string names = name;
+  for (const auto& [option, other] : kSynonyms)
+    if (name == option && !app.get_option_no_throw(std::string(other)))
+      names += fmt::format(",{}", other);
+  return names;
+}
+
+// Of options that are given again; as the options of settings and flags do, lists take all.
+CLI::Option* lastWins(CLI::Option* option) {
+  return option->get_positional() ? option
+                                  : option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
 }
 
 template <class T>
@@ -93,9 +117,9 @@ Command Command::addCommand(const std::string& name, const std::string& help) {
 template <class T>
 Option Command::addOption(const std::string& names, T& value, const std::string& help) {
   if constexpr (kIsOfNumbers<T>)
-    return Option(addNumberOption(*app_, names, value, help));
+    return Option(lastWins(addNumberOption(*app_, names, value, help)));
   else
-    return Option(app_->add_option(names, value, help));
+    return Option(lastWins(app_->add_option(withSynonyms(*app_, names), value, help)));
 }
 template Option Command::addOption(const std::string&, std::string&, const std::string&);
 template Option Command::addOption(const std::string&, std::optional<std::string>&,
@@ -124,7 +148,15 @@ Option Command::addParsedOption(const std::string& names,
     set(words);
     return true;
   };
-  return Option(app_->add_option(names, take, help));
+  return Option(lastWins(app_->add_option(withSynonyms(*app_, names), take, help)));
+}
+
+Option Command::addJoinedOption(const std::string& names, std::string& value,
+                                const std::string& help) {
+  const auto join = [&value](const Words& words) {
+    value = fmt::format("{}", fmt::join(words, ","));
+  };
+  return addParsedOption(names, join, help).typeName("TEXT").takesAll();
 }
 
 Option Command::addFlagWithValue(const std::string& names,
@@ -138,7 +170,10 @@ Command Command::callback(const std::function<void()>& run) {
 }
 Command Command::requiresCommand() { return Command(*app_->require_subcommand(1)); }
 Command Command::footer(const std::string& text) { return Command(*app_->footer(text)); }
-Command Command::hidden() { return Command(*app_->group("")); }
+Command Command::briefHelp(const std::vector<std::string>& options, const std::string& examples) {
+  helpOf(*app_).shorten(*app_, {options, examples});
+  return *this;
+}
 Command Command::widerNames() {
   app_->get_formatter()->column_width(32);
   return *this;

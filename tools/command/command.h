@@ -58,7 +58,9 @@ class Command {
   }
 
   // An option, or an argument if the name has no dash. `value`, of a type that command.cpp lists,
-  // is set when the command line is parsed; it must live until then.
+  // is set when the command line is parsed; it must live until then. Lists grow each time that the
+  // option is given; of anything else the last value counts. The help shows the first long name
+  // alone (help.h).
   template <class T>
   Option addOption(const std::string& names, T& value, const std::string& help);
   template <class T>
@@ -74,6 +76,8 @@ class Command {
   using Words = std::vector<std::string>;
   Option addParsedOption(const std::string& names, const std::function<void(const Words&)>& set,
                          const std::string& help);
+  // A list in one text: what is given again is added behind a comma.
+  Option addJoinedOption(const std::string& names, std::string& value, const std::string& help);
   // --NAME or --NAME=VALUE: with "true" or the value. The next word is not the value.
   Option addFlagWithValue(const std::string& names,
                           const std::function<void(const std::string&)>& set,
@@ -82,7 +86,9 @@ class Command {
   Command callback(const std::function<void()>& run);
   Command requiresCommand();
   Command footer(const std::string& text);  // of the help
-  Command hidden();
+  // The help shows, of the options in groups, these alone, after the examples; `--help all` shows
+  // all.
+  Command briefHelp(const std::vector<std::string>& options, const std::string& examples = "");
   Command widerNames();  // in the help
 
   bool has(const std::string& option) const;  // was it given?

@@ -13,12 +13,16 @@
 #include <cstring>
 #include <filesystem>
 #include <initializer_list>
+#include <map>
+#include <memory>
 
 #include "base/error.h"
 #include "base/text.h"
 #include "commands.h"
+#include "front/synonyms.h"
+#include "help.h"
 #include "messages.h"
-#include "option_typos.h"
+#include "scene_options.h"
 #include "session/memory_estimate.h"
 #include "session/render_report.h"
 
@@ -55,18 +59,35 @@ std::string describeConversion(const CLI::App& command, const std::string& error
                                       : "a number");
 }
 
-// "--samples: given more than once" for CLI11's "--samples: At Most 1 required but received 2", and
-// "--samples: needs a value, N" for "--samples: 1 required N missing".
+// "--samples: needs a value, N" for CLI11's "--samples: 1 required N missing".
 std::string describeMismatch(const std::string& error) {
-  const std::string_view kTwice = ": At Most 1 required", kNone = ": 1 required ",
-                         kMissing = " missing";
-  if (const size_t twice = error.find(kTwice); twice != std::string::npos)
-    return error.substr(0, twice) + ": given more than once";
+  const std::string_view kNone = ": 1 required ", kMissing = " missing";
   const size_t none = error.find(kNone);
   if (none == std::string::npos || !error.ends_with(kMissing)) return "";
   const size_t argument = none + kNone.size();
   return fmt::format("{}: needs a value, {}", error.substr(0, none),
                      error.substr(argument, error.size() - kMissing.size() - argument));
+}
+
+// Which option of the command the unknown one, "--spp", may mean; where it is none, what to do.
+std::string hintOn(const std::string& option, const CLI::App& command) {
+  const Setting* ours = settingCalled(option);
+  if (ours && command.get_option_no_throw("--" + ours->option))
+    return fmt::format("did you mean `{}`?", optionText(*ours));
+  if (const auto place = placeOf(option); !place.empty() && command.get_option_no_throw("--probe"))
+    return std::string(place);
+  std::vector<std::string> shown;  // names that the help shows
+  std::map<std::string, std::string> all;
+  for (const CLI::Option* known : command.get_options())
+    if (const auto& names = known->get_lnames(); !names.empty()) {
+      shown.push_back("--" + names.front());
+      for (const std::string& name : names) all["--" + name] = shown.back();
+    }
+  std::vector<std::string_view> names;
+  for (const auto& [name, first] : all) names.push_back(name);
+  const std::string nearest(nearestName(option, names));
+  if (nearest.empty()) return didYouMean(option, {shown.begin(), shown.end()});
+  return fmt::format("did you mean `{}`?", all.at(nearest));
 }
 
 // Rewrites an error message of CLI11; for an unknown word, adds the nearest known one.
@@ -86,23 +107,18 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   if (unknown.empty()) return fmt::format("{}; {}", error.what(), help);
 
   const std::string& word = unknown.front();
-  const bool isOption = word.starts_with("-");
+  const auto owner = std::ranges::find_if(  // `prob info`: it is none of `info`
+      commands, [](const CLI::App* named) { return !named->remaining(false).empty(); });
+  const CLI::App& where = owner == commands.end() ? command : **owner;
+  if (word.starts_with("-")) {
+    const std::string option = word.substr(0, word.find('='));
+    return fmt::format("unknown option `{}`; {}", option, hintOn(option, where));
+  }
   std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames())
-      if (isOption) names.push_back("--" + name);
-  for (const CLI::App* subcommand : command.get_subcommands(nullptr))
-    if (!isOption && !subcommand->get_group().empty()) names.push_back(subcommand->get_name());
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  const std::string option = word.substr(0, word.find('='));
-  const std::string_view ours = isOption ? equivalentOption(option) : "";
-  if (std::find(known.begin(), known.end(), ours.substr(0, ours.find(' '))) != known.end())
-    return fmt::format("unknown option `{}`; did you mean `{}`?", option, ours);
-  return fmt::format("unknown {} `{}`; {}",
-                     isOption        ? "option"
-                     : known.empty() ? "argument"
-                                     : "command",
-                     word, known.empty() ? help : didYouMean(option, known));
+  for (const CLI::App* subcommand : where.get_subcommands(nullptr))
+    names.push_back(subcommand->get_name());
+  return fmt::format("unknown {} `{}`; {}", names.empty() ? "argument" : "command", word,
+                     names.empty() ? help : didYouMean(word, {names.begin(), names.end()}));
 }
 
 // Without it the first file that is opened would get the number of a closed standard stream, and
@@ -119,12 +135,39 @@ void finishOutput() {
     throwRun("standard output: {}", std::strerror(errno));
 }
 
+// --progress and --quiet for the commands below `app` that write files and do not have them.
+void addVerbosity(CLI::App& app) {
+  constexpr std::array kReaders = {"info", "reflectivity", "doctor", "reference"};
+  for (CLI::App* command : app.get_subcommands(nullptr)) {
+    if (!command->get_subcommands(nullptr).empty()) {
+      addVerbosity(*command);
+    } else if (std::ranges::count(kReaders, command->get_name()) == 0 &&
+               !command->get_option_no_throw("--quiet")) {
+      command->add_flag("--progress", verbosity().progress,
+                        "show the progress bar also if standard error is not a terminal");
+      command->add_flag("--quiet", verbosity().quiet,
+                        "print nothing but warnings, errors and what --json prints");
+    }
+  }
+}
+
+// Whether the words ask for the whole help.
+bool asksForAll(int argc, char** argv) {
+  const std::vector<std::string_view> words(argv, argv + argc);
+  const auto help = std::ranges::find_if(
+      words, [](std::string_view word) { return word == "--help" || word == "-h"; });
+  return help != words.end() && help + 1 != words.end() && help[1] == "all";
+}
+
 void addCommands(Command app, std::initializer_list<void (*)(Command)> adders) {
   for (const auto add : adders) add(app);
 }
 
 int run(int argc, char** argv) {
   CLI::App app{"Renders glTF scenes lit by HDR light probes.", "chromeball"};
+  const auto help = std::make_shared<HelpFormatter>();
+  app.formatter(help);
+  app.set_help_flag("-h,--help", "Print this help and exit; `--help all`: with all options");
   app.set_version_flag("--version", "chromeball " CHROMEBALL_VERSION);
   app.require_subcommand(1);
   Command command(app);
@@ -144,6 +187,8 @@ int run(int argc, char** argv) {
        addImageFlatFieldCommand, addImageRelightCommand, addImageViewCommand});
   addCommands(command, {addCameraCommand, addLightsCommand, addLightsErrorCommand, addInfoCommand,
                         addDoctorCommand, addReferenceCommand});
+  addVerbosity(app);
+  if (asksForAll(argc, argv)) help->showAll();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -7,6 +7,7 @@
 
 #include "front/plan_render.h"
 #include "image/auto_exposure.h"
+#include "messages.h"
 #include "scene_options.h"
 #include "session/meter_exposure.h"
 
@@ -43,7 +44,7 @@ DisplayTransform displayOf(const Settings& settings, const ImageFile& file,
                            ? *ofRender
                            : autoExposure(inDisplayWindow(*std::move(color), file.placement, path),
                                           coverageIn(file, path));
-  fmt::print("{}\n", chosenInWords(transform.exposure));
+  say("{}\n", chosenInWords(transform.exposure));
   return transform;
 }
 

@@ -22,7 +22,6 @@ namespace {
 
 struct ImageDenoiseArguments {
   std::string input, output;
-  bool quiet = false;
 };
 
 // No number in a render is as large.
@@ -82,11 +81,11 @@ void run(const ImageDenoiseArguments& arguments) {
                            .albedo = reader.halved("albedo", 3, kMaxUnit),
                            .normal = reader.halved("normal", 3, kMaxUnit),
                            .disparity = reader.halved("disparity", 1)};
-  print(file.messages, arguments.quiet);  // not of a file that lacks layers: that is said instead
+  print(file.messages);  // not of a file that lacks layers: that is said instead
   checkMemory(arguments.input, color.mean);
   const std::atomic<bool> never = false;
   Denoised denoised = [&] {
-    ProgressBar bar(!arguments.quiet && ProgressBar::isTerminal());
+    ProgressBar bar(progressStyle(), "denoising");
     return sumOf(*denoise(
         input, [&](double fraction) { bar.update(fraction); }, never));
   }();
@@ -99,10 +98,9 @@ void run(const ImageDenoiseArguments& arguments) {
   const double noise = addDenoised(std::move(denoised), before, output);
   if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
   writeKept(arguments.output, std::move(output), arguments.input);
-  if (!arguments.quiet)
-    fmt::print("noise {}: {}\n",
-               std::isfinite(noise) ? fmt::format("about {:.2f}%", 100 * noise) : "unknown",
-               printableName(arguments.output));
+  say("noise {}: {}\n",
+      std::isfinite(noise) ? fmt::format("about {:.2f}%", 100 * noise) : "unknown",
+      printableName(arguments.output));
 }
 
 }  // namespace
@@ -113,7 +111,6 @@ void addImageDenoiseCommand(Command image) {
   command.addRequired("IN", a.input, "A render with --aov denoise, .exr");
   command.addRequired("OUT", a.output,
                       "The image to write; an .exr also has the layers noisy and denoise_error");
-  command.addFlag("--quiet", a.quiet, "Show neither progress nor the noise");
 }
 
 }  // namespace chromeball

@@ -161,8 +161,8 @@ void run(const ImageDevelopArguments& arguments) {
   Image& color = input.image.layers.front().image;
   print(inWords(develop(color, settings, &input.depth, input.frame)));
   if (!input.otherLayers.empty() && lowerExtension(arguments.out) == ".exr")
-    note("{}: its colour alone is developed and written; without the layers {}", arguments.in,
-         fmt::join(input.otherLayers, ", "));
+    print(Messages{makeNote("{}: its colour alone is developed and written; without the layers {}",
+                            arguments.in, fmt::join(input.otherLayers, ", "))});
   writeKept(arguments.out, std::move(input.image), arguments.in, input.transform);
 }
 

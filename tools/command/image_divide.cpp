@@ -29,8 +29,8 @@ void run(const ImageDivideArguments& arguments) {
   std::vector<std::string> others = layerNames(file);
   std::erase(others, "clipped");
   if (!others.empty())
-    note("{}: its colour alone is divided and written; without the layers {}", arguments.a,
-         fmt::join(others, ", "));
+    print(Messages{makeNote("{}: its colour alone is divided and written; without the layers {}",
+                            arguments.a, fmt::join(others, ", "))});
   Image a = colorAndAlphaOf(std::move(file), arguments.a);
   if (a.width != b.width || a.height != b.height)
     throwInput("{}: is {} x {}, but {} is {} x {}; only images of the same size can be divided",

@@ -47,16 +47,15 @@ JsonValue toJson(const Findings& findings) {
 
 void print(const Findings& findings) {
   const ImageError& error = findings.error;
-  fmt::print("mse             {:.6g}\n", error.mse);
-  fmt::print("relmse          {:.6g}\n", error.relMse);
-  fmt::print("bias            {:.6g}\n", error.bias);
-  fmt::print("max difference  {:.6g}\n", error.maxDifference);
-  fmt::print("psnr            {:.4g} dB\n", error.psnr);
-  if (error.invalid > 0) fmt::print("invalid         {} numbers left out\n", error.invalid);
-  if (findings.flip) fmt::print("flip            {:.6g}\n", *findings.flip);
+  say("mse             {:.6g}\n", error.mse);
+  say("relmse          {:.6g}\n", error.relMse);
+  say("bias            {:.6g}\n", error.bias);
+  say("max difference  {:.6g}\n", error.maxDifference);
+  say("psnr            {:.4g} dB\n", error.psnr);
+  if (error.invalid > 0) say("invalid         {} numbers left out\n", error.invalid);
+  if (findings.flip) say("flip            {:.6g}\n", *findings.flip);
   if (const auto& z = error.zScores)
-    fmt::print(
-        "z               mean {:.4g}, sd {:.4g}, {:.4g}% beyond 3 sigma (expected 0.27%), of {} "
+    say("z               mean {:.4g}, sd {:.4g}, {:.4g}% beyond 3 sigma (expected 0.27%), of {} "
         "numbers; maximum {:.3g}, p-value {:.2g}\n",
         z->mean, z->standardDeviation, 100 * z->fractionBeyond3, z->count, z->largest, z->pValue);
 }
@@ -97,9 +96,9 @@ void writeMap(const ImageErrorArguments& arguments, const Image& map) {
     }
   print(writeImage(arguments.output, colors));
   if (!arguments.json)
-    fmt::print("map             {}, {} from black {:g} to yellow {:g}\n", arguments.map,
-               logarithmic ? "logarithmic" : "linear",
-               logarithmic ? maximum * std::pow(10, -kDecades) : 0, maximum);
+    say("map             {}, {} from black {:g} to yellow {:g}\n", arguments.map,
+        logarithmic ? "logarithmic" : "linear", logarithmic ? maximum * std::pow(10, -kDecades) : 0,
+        maximum);
 }
 
 void run(const ImageErrorArguments& arguments, const Command& command) {

@@ -22,7 +22,7 @@ void warnOfLostMapping(const std::string& file, const Image& map, Mapping mappin
   // A scene file takes lenses only from files that name them.
   const bool isLens = mapping.kind() == Mapping::FisheyeDisc;
   warn(
-      "{}: has no place for its mapping, {}, and will be taken for {}: give `--from "
+      "{}: has no place for its mapping, {}, and will be taken for {}: give `--probe-mapping "
       "{}`{} where it is read, or write an .exr or .hdr",
       file, mappingName(mapping), mappingName(detected.mapping), mappingName(mapping),
       isLens ? "" : " or `[probe] mapping`");
@@ -75,10 +75,9 @@ void writeKept(const std::string& out, OutputImage output, const std::string& in
   print(writeImage(out, output, transform));
 }
 
-LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option,
-                      bool quiet) {
+LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option) {
   LoadedProbe probe = loadProbe(path, mapping, option);
-  print(probeMessages(probe, path), quiet);
+  print(probeMessages(probe, path));
   return probe;
 }
 

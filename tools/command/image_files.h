@@ -33,8 +33,7 @@ void writeKept(const std::string& out, OutputImage output, const std::string& in
 // Warns of channels above 1 if the file to write is a .png.
 void warnOfClipping(const std::string& file, const Image& image);
 
-LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option,
-                      bool quiet = false);
+LoadedProbe openProbe(const std::string& path, std::string_view mapping, std::string_view option);
 
 // Returns the size of a map to make for `file`. Throws InputError if it exceeds the limit of an
 // image, or if `copies` of it, including those for writing, take more memory than the process may

@@ -82,14 +82,13 @@ JsonValue toJson(const FlatField& field, const Series& series) {
 
 void print(const FlatField& field, const Series& series) {
   for (const auto& [name, a] : {std::pair{"a2", field.a2}, {"a4", field.a4}, {"a6", field.a6}})
-    fmt::print("{:<12}{:.5g} {:.5g} {:.5g}\n", name, a.x, a.y, a.z);
+    say("{:<12}{:.5g} {:.5g} {:.5g}\n", name, a.x, a.y, a.z);
   const dvec3 corner = field.at(field.centre + dvec2(field.unit, 0));
-  fmt::print("r = 1       at {:.5g} pixels from {:.5g},{:.5g}: response {:.4g} {:.4g} {:.4g}\n",
-             field.unit, field.centre.x, field.centre.y, corner.x, corner.y, corner.z);
-  fmt::print("samples     {}, r up to {:.3g}\n", series.samples.size(), field.largest);
+  say("r = 1       at {:.5g} pixels from {:.5g},{:.5g}: response {:.4g} {:.4g} {:.4g}\n",
+      field.unit, field.centre.x, field.centre.y, corner.x, corner.y, corner.z);
+  say("samples     {}, r up to {:.3g}\n", series.samples.size(), field.largest);
   const dvec3 error = 100.0 * field.rmsError;
-  fmt::print("error       {:.2g}% {:.2g}% {:.2g}% of the samples, RMS\n", error.x, error.y,
-             error.z);
+  say("error       {:.2g}% {:.2g}% {:.2g}% of the samples, RMS\n", error.x, error.y, error.z);
 }
 
 void run(const ImageFlatFieldArguments& arguments) {

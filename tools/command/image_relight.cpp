@@ -120,8 +120,8 @@ Image neededLayer(const ImageFile& file, const std::string& path, const std::str
 }
 
 Image lightMap(const ImageRelightArguments& arguments) {
-  Image map = openProbe(arguments.probe, arguments.mapping, "--mapping").latLong;
-  map = Probe(map, {}, parseColor(arguments.scale, "--scale")).latLong();
+  Image map = openProbe(arguments.probe, arguments.mapping, "--probe-mapping").latLong;
+  map = Probe(map, {}, parseColor(arguments.scale, "--probe-scale")).latLong();
   return arguments.leavesSunsOut ? extractSuns(map).remainder : map;
 }
 
@@ -251,8 +251,9 @@ void runGains(const ImageRelightArguments& arguments, const DisplayTransform& tr
 
 void checkEffects(const ImageRelightArguments& arguments, const Command& command) {
   if (!arguments.gains.empty())
-    command.refuse({"--bent", "--suns", "--add", "--rotation", "--scale", "--mapping"},
-                   "has no effect with --gain; it is for --probe, leave it out");
+    command.refuse(
+        {"--bent", "--suns", "--add", "--probe-rotation", "--probe-scale", "--probe-mapping"},
+        "has no effect with --gain; it is for --probe, leave it out");
   if (lowerExtension(arguments.out) == ".png") return;
   for (const auto& [given, option] : {std::pair(arguments.exposure != 0, "--exposure"),
                                       std::pair(arguments.tone != "none", "--tonemap")})
@@ -280,8 +281,8 @@ void addImageRelightCommand(Command image) {
       "by another probe (`render --aov albedo,normal,ao,bent_normal`).",
       run);
   command.addRequired("GROUPS", a.in, "the .exr with the layers");
-  command.addOption("--gain", a.gains,
-                    "NAME=GAIN or NAME=R,G,B for each group to change: sun=2,lamp=1,0.8,0.6");
+  command.addJoinedOption("--gain", a.gains,
+                          "NAME=GAIN or NAME=R,G,B for each group to change: sun=2,lamp=1,0.8,0.6");
   command.addOption("--probe", a.probe,
                     "light by this probe: albedo / pi times ambient occlusion times irradiance");
   command.addFlag("--bent", a.bent, "with --probe: irradiance on the bent normals");
@@ -290,8 +291,8 @@ void addImageRelightCommand(Command image) {
                   "their shadows");
   command.addOption("--add", a.added, "with --probe: a picture to add, such as that of the suns");
   addRotationOption(command, a.rotation);
-  command.addWithDefault("--scale", a.scale, "X or R,G,B: factor of the probe");
-  command.addWithDefault("--mapping", a.mapping, "of the probe; auto detects it");
+  command.addWithDefault("--probe-scale", a.scale, "X or R,G,B: factor of the probe");
+  command.addWithDefault("--probe-mapping", a.mapping, "of the probe; auto detects it");
   command.addRequired("-o,--output", a.out,
                       "the image to write: .exr (with the changed groups), .hdr, .pfm or .png");
   command.addOption("--exposure", a.exposure, "of a .png, in stops");

@@ -33,10 +33,10 @@ void printLegend(const Image& ids, const std::map<int, std::string>& names) {
     if (++shown > kMax) break;
     const auto name = names.find(id);
     const Color8 c = idColor(id);
-    fmt::print("#{:02x}{:02x}{:02x}  {}  {}\n", c[0], c[1], c[2], id,
-               name == names.end() ? "" : printable(name->second));
+    say("#{:02x}{:02x}{:02x}  {}  {}\n", c[0], c[1], c[2], id,
+        name == names.end() ? "" : printable(name->second));
   }
-  if (present.size() > kMax) fmt::print("and {} more\n", present.size() - kMax);
+  if (present.size() > kMax) say("and {} more\n", present.size() - kMax);
 }
 
 Image viewOf(const ImageFile& file, const std::string& path, const std::string& layer) {

@@ -102,14 +102,12 @@ void writeSphere(const std::string& file, const Image& latLong, const MadeLights
   const auto mean = [](const std::vector<dvec3>& all) {
     return std::accumulate(all.begin(), all.end(), dvec3(0)) / double(all.size());
   };
-  fmt::print(
-      "sphere      mean error {:.4g}%, maximum {:.4g}% over {} normals; mean irradiance of the "
+  say("sphere      mean error {:.4g}%, maximum {:.4g}% over {} normals; mean irradiance of the "
       "probe {}, of the lights {}",
       error.mean, error.max, normals.size(), rgbText(mean(spheres.probe)),
       rgbText(mean(spheres.lights)));
-  if (made.ambient) fmt::print("; ambient radiance {}", rgbText(dvec3(ambient)));
-  fmt::print(
-      "\n            columns: probe, lights, {:g} x (lights - probe) about grey{}; rows: facing +Z "
+  if (made.ambient) say("; ambient radiance {}", rgbText(dvec3(ambient)));
+  say("\n            columns: probe, lights, {:g} x (lights - probe) about grey{}; rows: facing +Z "
       "(front), -Z (back)\n",
       differenceGain(spheres), made.ambient ? ", ambient light" : "");
 }
@@ -181,8 +179,8 @@ void run(const LightsArguments& arguments, const Command& command) {
                      arguments.regions
                          ? lightPreview(latLong, lights, method.lights.regions(latLong, request))
                          : lightPreview(latLong, lights)));
-  fmt::print("lights      {}\n", lights.size());
-  if (meanError) fmt::print("mean error  {:.3g}%\n", *meanError);
+  say("lights      {}\n", lights.size());
+  if (meanError) say("mean error  {:.3g}%\n", *meanError);
   if (!arguments.sphere.empty()) writeSphere(arguments.sphere, latLong, made, subdivisions);
   if (meanError && request.maxErrorPercent && *meanError > *request.maxErrorPercent)
     warn("--max-error: {} lights do not reach {}%", lights.size(), *request.maxErrorPercent);
@@ -239,7 +237,7 @@ void addLightsCommand(Command app) {
   addRotationOption(command, a.rotation,
                     ": the lights that are written; mask and images are those of the probe's map");
   command.addOption("--probe-mask", a.probe.mask, kMaskHelp);
-  command.addOption("--mapping", a.probe.mapping, "the mapping of PROBE; auto detects it");
+  command.addOption("--probe-mapping", a.probe.mapping, "the mapping of PROBE; auto detects it");
 }
 
 }  // namespace chromeball

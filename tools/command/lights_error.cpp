@@ -120,15 +120,15 @@ void run(const LightsErrorArguments& given) {
 
   std::vector<Row> rows;
   busy.reset();
-  fmt::print("{:<22} {:>6} {:>7} {:>9} {:>9} {:>9}\n", "method", "count", "lights", "mean %",
-             "max %", "seconds");
+  say("{:<22} {:>6} {:>7} {:>9} {:>9} {:>9}\n", "method", "count", "lights", "mean %", "max %",
+      "seconds");
   for (const std::string& method : arguments.methods)
     for (const LightRequest& request : requests) {
       busy.emplace("making lights by " + method);
       const Row& row = rows.emplace_back(measure(method, latLong, request, normals, irradiance));
       busy.reset();
-      fmt::print("{:<22} {:>6} {:>7} {:>9.3f} {:>9.3f} {:>9.3f}\n", row.method, row.count,
-                 row.lights, row.error.mean, row.error.max, row.seconds);
+      say("{:<22} {:>6} {:>7} {:>9.3f} {:>9.3f} {:>9.3f}\n", row.method, row.count, row.lights,
+          row.error.mean, row.error.max, row.seconds);
       std::fflush(stdout);
     }
   if (!arguments.csv.empty()) writeText(arguments.csv, formatCsv(rows));
@@ -156,7 +156,7 @@ void addLightsErrorCommand(Command app) {
   command.addOption("--plot", a.plot, "write a plot of the table to this .svg");
   command.addOption("--seed", a.seed, "of stochastic methods");
   command.addOption("--probe-mask", a.probe.mask, kMaskHelp);
-  command.addOption("--mapping", a.probe.mapping, "the mapping of PROBE; auto detects it");
+  command.addOption("--probe-mapping", a.probe.mapping, "the mapping of PROBE; auto detects it");
 }
 
 }  // namespace chromeball

@@ -51,7 +51,7 @@ std::vector<SphericalPolygon> polygonsOf(const LightsArguments& request, const L
 void runPolygons(const LightsArguments& request, LightFormat format, LightUnits units) {
   constexpr int kMaxSuggested = 1000;
   if (request.suggest && !(request.rotation == Rotation()))
-    throwInput("--rotation: polygons are places in the probe's image; it turns lights");
+    throwInput("--probe-rotation: polygons are places in the probe's image; it turns lights");
   if (request.suggest && !(*request.suggest >= 1 && *request.suggest <= kMaxSuggested))
     throwInput("--suggest: should be a number of polygons from 1 to {}", kMaxSuggested);
   if (request.suggest && !request.polygons.empty())
@@ -81,11 +81,10 @@ void runPolygons(const LightsArguments& request, LightFormat format, LightUnits 
   if (!request.preview.empty())
     print(writeImage(request.preview, lightPreview(probe.latLong, lights,
                                                    {partitionOf(probe.latLong, sources), {}})));
-  fmt::print("polygons    {}\n", sources.size());
+  say("polygons    {}\n", sources.size());
   for (size_t i = 0; i < sources.size(); ++i) {
     const Rgb& e = lights[i].irradiance;
-    fmt::print(
-        "polygon     {} corners, {:.4g} sr, radiance {:.4g} {:.4g} {:.4g}, irradiance {:.4g} "
+    say("polygon     {} corners, {:.4g} sr, radiance {:.4g} {:.4g} {:.4g}, irradiance {:.4g} "
         "{:.4g} {:.4g}, unevenness {:.2g}%\n",
         sources[i].polygon.corners().size(), sources[i].polygon.solidAngle(), sources[i].radiance.x,
         sources[i].radiance.y, sources[i].radiance.z, e.x, e.y, e.z,

@@ -26,7 +26,6 @@ namespace {
 struct MergeArguments {
   std::vector<std::string> parts, outputs;
   Settings display;
-  bool quiet = false;
 };
 
 // The attributes that hold for the whole image: the first part's, and the names of the numbers in
@@ -61,7 +60,7 @@ void run(const MergeArguments& arguments) {
   checkDistinct(arguments.outputs, arguments.parts);
   const PartSet parts(arguments.parts);
   const std::atomic<bool> never = false;
-  ProgressBar bar(!arguments.quiet && ProgressBar::isTerminal());
+  ProgressBar bar(progressStyle(), "merging");
   MergedParts whole = merge(parts, [&](double fraction) { bar.update(kRenderShare * fraction); });
   FinishedImage finished = finish(
       whole.part.plan, whole.result, [&](double fraction) { bar.update(fraction); }, never);
@@ -75,12 +74,10 @@ void run(const MergeArguments& arguments) {
     messages.insert(messages.end(), lost.begin(), lost.end());
   }
   addExcluded(whole.result, messages);
-  print(messages, arguments.quiet);
-  if (!arguments.quiet)
-    fmt::print("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samplesPerPixel(),
-               parts.paths().size(), parts.paths().size() == 1 ? "" : "s", inWords(finished.noise),
-               inWords(finished.denoised),
-               printable(fmt::format("{}", fmt::join(arguments.outputs, ", "))));
+  print(messages);
+  say("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samplesPerPixel(),
+      parts.paths().size(), parts.paths().size() == 1 ? "" : "s", inWords(finished.noise),
+      inWords(finished.denoised), printable(fmt::format("{}", fmt::join(arguments.outputs, ", "))));
 }
 
 }  // namespace
@@ -95,7 +92,6 @@ void addMergeCommand(Command app) {
                    "Image to write: .exr, .hdr, .pfm or .png; may be given repeatedly")
       .onePerName();
   addDisplayOptions(command, a.display);
-  command.addFlag("--quiet", a.quiet, "Show neither progress nor the noise");
 }
 
 }  // namespace chromeball

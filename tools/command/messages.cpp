@@ -35,6 +35,11 @@ class BrokenPipesAreErrors {
 
 }  // namespace
 
+Verbosity& verbosity() {
+  static Verbosity given;
+  return given;
+}
+
 void writeError(std::string_view text) {
   const BrokenPipesAreErrors pipes;
   std::fwrite(text.data(), 1, text.size(), stderr);
@@ -49,7 +54,7 @@ void print(const Messages& messages, bool quiet) {
     const std::string text = message.text + inWords(message.remedy);
     if (message.kind == Message::Kind::Warning)
       warn(text);
-    else if (!quiet)
+    else if (!quiet && !verbosity().quiet)
       note(text);
   }
 }

@@ -7,6 +7,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/message.h"
 
@@ -25,10 +26,24 @@ void note(fmt::format_string<First, More...> format, First&& first, More&&... mo
   note(fmt::vformat(format, fmt::make_format_args(first, more...)));
 }
 
+// What --quiet and --progress of the command say that runs; commands of scenes have these among
+// their settings.
+struct Verbosity {
+  bool quiet = false, progress = false;
+};
+Verbosity& verbosity();
+
+// Prints what a command found to standard output, unless it is quiet.
+template <class... Arguments>
+void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  if (!verbosity().quiet) fmt::print(format, std::forward<Arguments>(arguments)...);
+}
+
 // As it is: parts of lines, and controls of the terminal.
 void writeError(std::string_view text);
 
-// All warnings, and the notes unless `quiet`; each with the option that resolves it.
+// All warnings, and the notes unless `quiet` or the command is; each with the option that resolves
+// it.
 void print(const Messages& messages, bool quiet = false);
 
 // The end of a sentence: "; try --probe-scale 0.019", or "; see --memory GB"; empty without one.

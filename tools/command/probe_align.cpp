@@ -55,11 +55,11 @@ std::string text(const Rotation::Angles& angles) {
 void print(const ProbeAlignment& alignment) {
   const Rotation::Angles angles = alignment.rotation.angles();
   const glm::dquat q = alignment.rotation.quaternion();
-  fmt::print("rotation         yaw {:.4f}, pitch {:.4f}, roll {:.4f} degrees: B as A sees it\n",
-             angles.yaw, angles.pitch, angles.roll);
-  fmt::print("quaternion       {:.7f} {:.7f} {:.7f} {:.7f} (x y z w)\n", q.x, q.y, q.z, q.w);
-  fmt::print("standard error   {:.2g} degrees\n", alignment.standardError());
-  fmt::print("correlation      {:.4f} of the log radiance\n", alignment.correlation);
+  say("rotation         yaw {:.4f}, pitch {:.4f}, roll {:.4f} degrees: B as A sees it\n",
+      angles.yaw, angles.pitch, angles.roll);
+  say("quaternion       {:.7f} {:.7f} {:.7f} {:.7f} (x y z w)\n", q.x, q.y, q.z, q.w);
+  say("standard error   {:.2g} degrees\n", alignment.standardError());
+  say("correlation      {:.4f} of the log radiance\n", alignment.correlation);
 }
 
 void warnOfDoubt(const ProbeAlignment& alignment) {
@@ -86,8 +86,8 @@ void run(const ProbeAlignArguments& arguments) {
     checkWritable(arguments.out);
     checkDistinct({arguments.out}, {arguments.first, arguments.second});
   }
-  const Image first = loadAligned(arguments.first, arguments.firstMapping, "--mapping-a");
-  const Image second = loadAligned(arguments.second, arguments.secondMapping, "--mapping-b");
+  const Image first = loadAligned(arguments.first, arguments.firstMapping, "--probe-mapping-a");
+  const Image second = loadAligned(arguments.second, arguments.secondMapping, "--probe-mapping-b");
   std::optional<BusyLine> busy("aligning");
   const ProbeAlignment alignment = alignProbes(first, second, arguments.first, arguments.second);
   busy.reset();
@@ -108,8 +108,10 @@ void addProbeAlignCommand(Command probe) {
   command.addRequired("B", a.second, "the probe to turn");
   command.addOption("-o,--output", a.out, "write B, turned, as a lat-long map");
   command.addFlag("--json", a.json, "print JSON");
-  command.addOption("--mapping-a", a.firstMapping, "the mapping of A; auto detects it");
-  command.addOption("--mapping-b", a.secondMapping, "the mapping of B; auto detects it");
+  command.addOption("--probe-mapping-a,--mapping-a", a.firstMapping,
+                    "the mapping of A; auto detects it");
+  command.addOption("--probe-mapping-b,--mapping-b", a.secondMapping,
+                    "the mapping of B; auto detects it");
   command.footer(
       "render takes the angles or the quaternion as --probe-rotation of B. The probes may differ "
       "in exposure, white balance, size and noise.\n");

@@ -59,25 +59,25 @@ JsonValue toJson(const Report& report) {
 void print(const Report& report) {
   for (size_t i = 0; i < report.views.size(); ++i) {
     const AssemblyPhotograph& p = report.photographs[i];
-    fmt::print("photograph   {}\n", printableName(p.file));
-    fmt::print("circle       {:.2f},{:.2f},{:.2f}{}\n", p.circle.centre.x, p.circle.centre.y,
-               p.circle.radius,
-               p.found ? fmt::format(", found: +- {:.2f} pixels, {:.0f}% of it are edges",
-                                     p.found->standardError, 100 * p.found->support)
-                       : "");
-    fmt::print("camera       azimuth {:.6g}, elevation {:.6g}\n", report.views[i].camera().azimuth,
-               report.views[i].camera().elevation);
+    say("photograph   {}\n", printableName(p.file));
+    say("circle       {:.2f},{:.2f},{:.2f}{}\n", p.circle.centre.x, p.circle.centre.y,
+        p.circle.radius,
+        p.found ? fmt::format(", found: +- {:.2f} pixels, {:.0f}% of it are edges",
+                              p.found->standardError, 100 * p.found->support)
+                : "");
+    say("camera       azimuth {:.6g}, elevation {:.6g}\n", report.views[i].camera().azimuth,
+        report.views[i].camera().elevation);
     if (i == 0) continue;
     const ViewMatch& match = report.matches[i];
-    fmt::print("overlap      {:.3g}% of the sphere with the views before, correlation {:.3f}\n",
-               100 * match.overlap, match.correlation);
-    fmt::print("turned by    {:.3f} degrees\n", match.turn);
-    fmt::print("multiplied   by {:.5g}\n", match.gain);
+    say("overlap      {:.3g}% of the sphere with the views before, correlation {:.3f}\n",
+        100 * match.overlap, match.correlation);
+    say("turned by    {:.3f} degrees\n", match.turn);
+    say("multiplied   by {:.5g}\n", match.gain);
   }
-  fmt::print("blind        {:.3g}% of the sphere, filled by {}\n", 100 * report.assembly.blindShare,
-             report.arguments.fill);
-  fmt::print("probe        {} x {}, {}\n", report.target.size.width, report.target.size.height,
-             mappingName(report.target.mapping));
+  say("blind        {:.3g}% of the sphere, filled by {}\n", 100 * report.assembly.blindShare,
+      report.arguments.fill);
+  say("probe        {} x {}, {}\n", report.target.size.width, report.target.size.height,
+      mappingName(report.target.mapping));
 }
 
 constexpr double kLargestDoubt = 0.1;  // of a circle, in pixels

@@ -52,8 +52,8 @@ void warnOfSource(const LoadedProbe& probe, const ProbeConvertArguments& argumen
 void run(const ProbeConvertArguments& arguments) {
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
-  const Rgb scale = arguments.scale.empty() ? Rgb(1) : parseColor(arguments.scale, "--scale");
-  LoadedProbe probe = openProbe(arguments.in, arguments.from, "--from");
+  const Rgb scale = arguments.scale.empty() ? Rgb(1) : parseColor(arguments.scale, "--probe-scale");
+  LoadedProbe probe = openProbe(arguments.in, arguments.from, "--probe-mapping");
   warnOfSource(probe, arguments);
   if (arguments.flip) mirrorLeftAndRight(probe.latLong);
   const auto [mapping, size] = target(arguments, probe.latLong);
@@ -78,13 +78,13 @@ void addProbeConvertCommand(Command probe) {
                       "lat-long, angular, mirror-ball, cube-cross, cube-strip, cube-3x2 or "
                       "fisheye[:FOV[:PROJECTION]], by default :180:equidistant; or equisolid, "
                       "orthographic, stereographic");
-  command.addOption("--from", a.from, "the mapping of IN; auto detects it");
+  command.addOption("--probe-mapping", a.from, "the mapping of IN; auto detects it");
   command.addOption("--size", a.size, "WIDTHxHEIGHT; else the size that keeps the detail");
   addRotationOption(command, a.rotation);
-  command.addOption("--scale", a.scale, "X or R,G,B: multiply all radiance");
+  command.addOption("--probe-scale", a.scale, "X or R,G,B: multiply all radiance");
   command.addFlag("--flip", a.flip,
                   "mirror IN left and right first: a photograph of a mirror ball. Its centre then "
-                  "shows the camera: with the camera on +Z, turn by --rotation 180");
+                  "shows the camera: with the camera on +Z, turn by --probe-rotation 180");
 }
 
 }  // namespace chromeball

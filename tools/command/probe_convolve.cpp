@@ -92,7 +92,7 @@ void writeLevels(const ProbeConvolveArguments& arguments, const Image& latLong) 
   const size_t clipped = writeKtx2(arguments.out, images);
   busy.reset();
   for (const CubeLevel& level : levels)
-    fmt::print("{0}x{0}: roughness {1:.4g}\n", level.faces.width, level.roughness);
+    say("{0}x{0}: roughness {1:.4g}\n", level.faces.width, level.roughness);
   if (clipped)
     warn("{}: {} channels exceed a half float and are clipped at 65504", arguments.out, clipped);
 }
@@ -101,7 +101,7 @@ void run(const ProbeConvolveArguments& arguments) {
   check(arguments);
   std::optional<ZonalKernel> kernel;
   if (!isKtx(arguments)) kernel = parseKernel(arguments.kernel);
-  LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--mapping");
+  LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--probe-mapping");
   if (!arguments.fromSize.empty()) probe.latLong = reduced(arguments, probe.latLong);
   if (!kernel) {
     writeLevels(arguments, probe.latLong);
@@ -138,7 +138,7 @@ void addProbeConvolveCommand(Command probe) {
   command.addOption("--mips", a.mips,
                     "the roughness of the levels of a .ktx2: khronos (linear), or filament");
   addRotationOption(command, a.rotation);
-  command.addOption("--mapping", a.mapping, "the mapping of IN; auto detects it");
+  command.addOption("--probe-mapping", a.mapping, "the mapping of IN; auto detects it");
 }
 
 }  // namespace chromeball

@@ -31,7 +31,7 @@ void run(const ProbeCropArguments& arguments) {
   if (!(arguments.fov > 0 && arguments.fov < 180))
     throwInput("--fov: {} should be above 0 and below 180 degrees", arguments.fov);
   const Rotation pose = Rotation::ofAngles(arguments.pose);
-  const Image latLong = openProbe(arguments.probe, arguments.mapping, "--mapping").latLong;
+  const Image latLong = openProbe(arguments.probe, arguments.mapping, "--probe-mapping").latLong;
   const ImageSize size = checkedSize(arguments.out, sizeOf(arguments, latLong));
   const Image image = crop(latLong, {pose, arguments.fov, size});
   print(
@@ -52,7 +52,7 @@ void addProbeCropCommand(Command probe) {
   command.addWithDefault("--roll", a.pose.roll, "degrees, positive lifts the camera's right");
   command.addOption("--size", a.size,
                     "WIDTHxHEIGHT; else 4:3, with pixels in the middle as wide as texels");
-  command.addOption("--mapping", a.mapping, "the mapping of PROBE; auto detects it");
+  command.addOption("--probe-mapping", a.mapping, "the mapping of PROBE; auto detects it");
   command.footer("These are the angles of a tile of `probe stitch`, which puts crops together.\n");
 }
 

@@ -86,7 +86,7 @@ Edits parse(const ProbeEditArguments& arguments) {
                arguments.regions.size(), arguments.gains.size());
   for (size_t i = 0; i < arguments.regions.size(); ++i)
     edits.regions.push_back(parseRegion(arguments.regions[i], arguments.gains[i]));
-  if (!arguments.scale.empty()) edits.scale = parseColor(arguments.scale, "--scale");
+  if (!arguments.scale.empty()) edits.scale = parseColor(arguments.scale, "--probe-scale");
   if (!arguments.clip.empty()) {
     edits.clip = parseNumber(arguments.clip, "--clip");
     if (!isPositiveFloat(*edits.clip))
@@ -99,8 +99,9 @@ Edits parse(const ProbeEditArguments& arguments) {
                        !edits.scale && !edits.clip && !edits.clipStops;
   if (isEmpty)
     throwInput(
-        "probe edit: nothing to do; give --rotation, --fill-nadir, --below-horizon, --region, "
-        "--scale, --clip or --clip-stops");
+        "probe edit: nothing to do; give --probe-rotation, --fill-nadir, --below-horizon, "
+        "--region, "
+        "--probe-scale, --clip or --clip-stops");
   return edits;
 }
 
@@ -141,7 +142,7 @@ void run(const ProbeEditArguments& arguments) {
   const Edits edits = parse(arguments);
   checkWritable(arguments.out);
   checkDistinct({arguments.out}, {arguments.in});
-  LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--mapping");
+  LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--probe-mapping");
   apply(edits, arguments.in, probe.latLong);
   writeProbe(arguments.out, probe.latLong);
 }
@@ -167,13 +168,13 @@ void addProbeEditCommand(Command probe) {
                  "times. Azimuth is from -Z, the map's centre, counter-clockwise seen from above")
       .onePerName();
   command.addOption("--gain", a.gains, "X or R,G,B, one for each --region, in order").onePerName();
-  command.addOption("--scale", a.scale, "X or R,G,B: multiply all radiance");
+  command.addOption("--probe-scale", a.scale, "X or R,G,B: multiply all radiance");
   command.addOption("--clip", a.clip, "X: lower the channels above X to X");
   command
       .addOption("--clip-stops", a.clipStops,
                  "N: the same at 2^N times the mean luminance over the sphere")
       .excludes("--clip");
-  command.addOption("--mapping", a.mapping, "the mapping of IN; auto detects it");
+  command.addOption("--probe-mapping", a.mapping, "the mapping of IN; auto detects it");
 }
 
 }  // namespace chromeball

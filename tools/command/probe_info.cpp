@@ -129,7 +129,7 @@ ProbeInfo turned(ProbeInfo info, const Rotation& rotation) {
 }
 
 void run(const ProbeInfoArguments& arguments) {
-  const LoadedProbe probe = loadProbe(arguments.file, arguments.mapping, "--mapping");
+  const LoadedProbe probe = loadProbe(arguments.file, arguments.mapping, "--probe-mapping");
   print(probe.messages);
   for (const std::string& warning : lightWarnings(probe, arguments.file)) warn(warning);
   const ProbeInfo info = turned(probeInfo(probe.latLong), arguments.rotation);
@@ -152,8 +152,8 @@ void addProbeInfoCommand(Command probe) {
   auto [command, a] = probe.addCommand<ProbeInfoArguments>(
       "info", "Show the mapping and the statistics of a probe.", run);
   command.addRequired("FILE", a.file,
-                     "the probe's image, or a folder with the six faces of a cube map");
-  command.addOption("--mapping", a.mapping,
+                      "the probe's image, or a folder with the six faces of a cube map");
+  command.addOption("--probe-mapping", a.mapping,
                     "auto, lat-long, angular, mirror-ball, cube-cross, cube-strip or cube-3x2");
   addRotationOption(command, a.rotation, ", and with it the directions");
   command.addFlag("--json", a.json, "print JSON");

@@ -35,7 +35,7 @@ void run(const ProbeIrradianceArguments& arguments) {
   };
   const ImageSize given =
       arguments.size.empty() ? ImageSize{0, 0} : checked(parseSize(arguments.size, "--size"));
-  const LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--mapping");
+  const LoadedProbe probe = openProbe(arguments.in, arguments.mapping, "--probe-mapping");
   const ImageSize size =
       given.width > 0 ? given : checked({probe.latLong.width, probe.latLong.height});
   std::optional<BusyLine> busy("irradiance of the probe");
@@ -57,7 +57,7 @@ void addProbeIrradianceCommand(Command probe) {
       "--method", a.method,
       "exact, or sh: spherical harmonics to order 2, 1 to 10% off, may be negative");
   addRotationOption(command, a.rotation);
-  command.addOption("--mapping", a.mapping, "the mapping of IN; auto detects it");
+  command.addOption("--probe-mapping", a.mapping, "the mapping of IN; auto detects it");
 }
 
 }  // namespace chromeball

@@ -152,20 +152,20 @@ std::string settingsText(const CameraSettings& settings) {
 void print(const PhotographSeries& series, const MergedPhotographs& merged) {
   const double pixels = double(merged.image.clipped.texels.size()) / 100;
   for (size_t i = 0; i < series.files.size(); ++i)
-    fmt::print("exposure {:<3}    {}: {}, factor {}; {:.3g}% used, {:.3g}% saturated\n", i + 1,
-               printableName(series.files[i]), settingsText(merged.settings[i]),
-               factorText(merged.factors[i]), double(merged.image.uses[i].weighted) / pixels,
-               double(merged.image.uses[i].saturated) / pixels);
+    say("exposure {:<3}    {}: {}, factor {}; {:.3g}% used, {:.3g}% saturated\n", i + 1,
+        printableName(series.files[i]), settingsText(merged.settings[i]),
+        factorText(merged.factors[i]), double(merged.image.uses[i].weighted) / pixels,
+        double(merged.image.uses[i].saturated) / pixels);
   for (const ExposureAgreement& a : merged.agreements)
     if (const auto error = a.error())
-      fmt::print("ratio {:>3} : {:<3}   given {:.5g}, found {} {} {} ({:.2g}% off)\n", a.longer + 1,
-                 a.shorter + 1, a.factor, ratioText(a.factor * a.found.x),
-                 ratioText(a.factor * a.found.y), ratioText(a.factor * a.found.z), 100 * *error);
-  fmt::print("response        {}, white at {:g}\n", merged.responseName, merged.white);
-  fmt::print("clipped         {} pixels in all exposures, {:.3g}%\n", merged.image.clippedPixels,
-             double(merged.image.clippedPixels) / pixels);
-  fmt::print("under-exposed   {} pixels in all exposures, {:.3g}%\n",
-             merged.image.underexposedPixels, double(merged.image.underexposedPixels) / pixels);
+      say("ratio {:>3} : {:<3}   given {:.5g}, found {} {} {} ({:.2g}% off)\n", a.longer + 1,
+          a.shorter + 1, a.factor, ratioText(a.factor * a.found.x), ratioText(a.factor * a.found.y),
+          ratioText(a.factor * a.found.z), 100 * *error);
+  say("response        {}, white at {:g}\n", merged.responseName, merged.white);
+  say("clipped         {} pixels in all exposures, {:.3g}%\n", merged.image.clippedPixels,
+      double(merged.image.clippedPixels) / pixels);
+  say("under-exposed   {} pixels in all exposures, {:.3g}%\n", merged.image.underexposedPixels,
+      double(merged.image.underexposedPixels) / pixels);
 }
 
 // Of a merged image, from the channels of its photographs: those that a filter is applied in.
@@ -275,7 +275,7 @@ void calibrate(const ProbeMergeArguments& arguments, const Command& command) {
                         {"median", vectorToJson(filter.median)},
                         {"pixels", filter.pixels}});
   else
-    fmt::print("transmission    {:.5g},{:.5g},{:.5g} of {} pixels\n", t.x, t.y, t.z, filter.pixels);
+    say("transmission    {:.5g},{:.5g},{:.5g} of {} pixels\n", t.x, t.y, t.z, filter.pixels);
 }
 
 void run(const ProbeMergeArguments& arguments, const Command& command) {
@@ -293,11 +293,12 @@ void addProbeMergeCommand(Command probe) {
                     "photographs of one view, of one size: JPEG, PNG, TIFF, .exr, .hdr or .pfm");
   command.addOption("-o,--output", a.output,
                     "the image to write: .exr (with the layer `clipped`), .hdr or .pfm");
-  command.addOption("--exposures", a.exposures,
-                    "exposure times in seconds, one for each photograph, as in 1/10,1/40; in place "
-                    "of EXIF's time, aperture and ISO");
-  command.addOption("--apertures", a.apertures,
-                    "f-numbers, one for each photograph, in place of EXIF's");
+  command.addJoinedOption(
+      "--exposures", a.exposures,
+      "exposure times in seconds, one for each photograph, as in 1/10,1/40; in place "
+      "of EXIF's time, aperture and ISO");
+  command.addJoinedOption("--apertures", a.apertures,
+                          "f-numbers, one for each photograph, in place of EXIF's");
   command
       .addOption("--aperture-ratio", a.ratios,
                  "A:B=X: f/A lets X times as much light pass as f/B, measured; else (B/A)^2")

@@ -19,7 +19,7 @@ void LightsProbe::checkMask() const {
 }
 
 LoadedProbe LightsProbe::loadWithFile() const {
-  LoadedProbe probe = openProbe(file, mapping, "--mapping");
+  LoadedProbe probe = openProbe(file, mapping, "--probe-mapping");
   if (mask == "below-horizon") {
     replaceBelowHorizon(probe.latLong, Rgb(0));
     if (probe.maximum > 0 && meanRadiance(probe.latLong) == glm::dvec3(0))
@@ -40,13 +40,11 @@ uint64_t parseSeed(const std::string& text) {
 void addRotationOption(Command command, Rotation& rotation, const std::string& more) {
   command
       .addParsedOption(
-          "--rotation",
+          "--probe-rotation",
           [&rotation](const Command::Words& words) {
-            rotation = parseRotation(words.front(), "--rotation");
+            rotation = parseRotation(words.front(), "--probe-rotation");
           },
-          "YAW[,PITCH,ROLL] in degrees, or a quaternion X,Y,Z,W: turn the environment as render's "
-          "--probe-rotation" +
-              more)
+          "YAW[,PITCH,ROLL] in degrees, or a quaternion X,Y,Z,W: turn the environment" + more)
       .typeName("TEXT");
 }
 

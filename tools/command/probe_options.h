@@ -42,7 +42,7 @@ inline int subdivisionsFor(int normals) {
 // A seed from its text: std::stoull and the like take -1 for 2^64 - 1. Throws InputError.
 uint64_t parseSeed(const std::string& text);
 
-// --rotation. `rotation` is set when the command line is parsed; it must outlive the command.
+// --probe-rotation. `rotation` is set when the command line is parsed; it must outlive the command.
 // `more` ends the sentence of the help.
 void addRotationOption(Command command, Rotation& rotation, const std::string& more = "");
 

@@ -54,7 +54,7 @@ void run(const ProbePlotArguments& arguments) {
   if (arguments.elevation && !(std::fabs(*arguments.elevation) <= 90))
     throwInput("--elevation: {} should be -90 to 90 degrees", *arguments.elevation);
   const AzimuthRange range = parseAzimuthRange(arguments.azimuth);
-  const LoadedProbe loaded = openProbe(arguments.file, arguments.mapping, "--mapping");
+  const LoadedProbe loaded = openProbe(arguments.file, arguments.mapping, "--probe-mapping");
   const Probe probe(loaded.latLong);
   const Importance importance(probe, arguments.compensated);
   const RowDistribution row =
@@ -84,7 +84,7 @@ void addProbePlotCommand(Command probe) {
   command.addWithDefault("--samples", a.samples, "number of samples to draw");
   command.addFlag("--compensated", a.compensated,
                   "sample what is brighter than the mean, as renders with MIS do");
-  command.addOption("--mapping", a.mapping, "the mapping of PROBE; auto detects it");
+  command.addOption("--probe-mapping", a.mapping, "the mapping of PROBE; auto detects it");
 }
 
 }  // namespace chromeball

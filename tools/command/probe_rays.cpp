@@ -94,14 +94,13 @@ void print(const ProbeRaysArguments& arguments, const RayReport& report) {
   const auto rays = [&](const std::optional<double>& variance) {
     return variance ? fmt::format("{:.15g}", raysForError(*variance, arguments.error)) : "no light";
   };
-  fmt::print("rays for an error of {:.4g}% of the irradiance, unoccluded\n", 100 * arguments.error);
-  fmt::print("{:<10} {:>14} {:>14} {:>14}\n", "sampling", "upward", "median", "max");
+  say("rays for an error of {:.4g}% of the irradiance, unoccluded\n", 100 * arguments.error);
+  say("{:<10} {:>14} {:>14} {:>14}\n", "sampling", "upward", "median", "max");
   for (const auto& [name, variances] : report.samplings)
-    fmt::print("{:<10} {:>14} {:>14} {:>14}\n", name, rays(variances[0]), rays(variances[1]),
-               rays(variances[2]));
+    say("{:<10} {:>14} {:>14} {:>14}\n", name, rays(variances[0]), rays(variances[1]),
+        rays(variances[2]));
   if (report.unlit > 0)
-    fmt::print("{} of {} normals receive no light and are left out\n", report.unlit,
-               report.normals);
+    say("{} of {} normals receive no light and are left out\n", report.unlit, report.normals);
 }
 
 void run(const ProbeRaysArguments& arguments) {
@@ -113,7 +112,7 @@ void run(const ProbeRaysArguments& arguments) {
       arguments.size.empty()
           ? std::nullopt
           : std::optional(checkedSize(arguments.file, parseSize(arguments.size, "--size")));
-  LoadedProbe probe = openProbe(arguments.file, arguments.mapping, "--mapping");
+  LoadedProbe probe = openProbe(arguments.file, arguments.mapping, "--probe-mapping");
   if (size) probe.latLong = convert(probe.latLong, Mapping::LatLong, Mapping::LatLong, *size);
   const RayReport report = reportOf(probe.latLong, arguments.rotation);
   arguments.json ? printJson(toJson(arguments, report)) : print(arguments, report);
@@ -132,7 +131,7 @@ void addProbeRaysCommand(Command probe) {
                          "the standard error of the luminance to reach, as a fraction");
   command.addOption("--size", a.size, "WIDTHxHEIGHT: reduce the probe to this lat-long map first");
   addRotationOption(command, a.rotation);
-  command.addOption("--mapping", a.mapping, "the mapping of PROBE; auto detects it");
+  command.addOption("--probe-mapping", a.mapping, "the mapping of PROBE; auto detects it");
   command.addFlag("--json", a.json, "print JSON");
   command.footer(
       "Samplings:\n  uniform      directions uniform over the hemisphere\n  cosine       pdf "

@@ -70,12 +70,12 @@ Image pictureOf(const Spheres& spheres, const Image& mask) {
 }
 
 void print(const std::array<EstimateError, 3>& errors) {
-  fmt::print("{:<14} {:>10} {:>10} {:>10} {:>16}\n", "sphere", "RMSE", "si-RMSE", "scale",
-             "angular error");
+  say("{:<14} {:>10} {:>10} {:>10} {:>16}\n", "sphere", "RMSE", "si-RMSE", "scale",
+      "angular error");
   for (size_t i = 0; i < errors.size(); ++i) {
     const EstimateError& e = errors[i];
-    fmt::print("{:<14} {:>10.4g} {:>10.4g} {:>10.4g} {:>8.4g} degrees\n", kSphereNames[i], e.rmse,
-               e.scaleInvariantRmse, e.scale, e.angularError);
+    say("{:<14} {:>10.4g} {:>10.4g} {:>10.4g} {:>8.4g} degrees\n", kSphereNames[i], e.rmse,
+        e.scaleInvariantRmse, e.scale, e.angularError);
   }
 }
 
@@ -101,8 +101,9 @@ void run(const ProbeSpheresArguments& arguments) {
     checkDistinct({arguments.out}, {arguments.predicted, arguments.truth});
   }
   const Image probes[] = {
-      openProbe(arguments.predicted, arguments.predictedMapping, "--mapping-predicted").latLong,
-      openProbe(arguments.truth, arguments.trueMapping, "--mapping-true").latLong};
+      openProbe(arguments.predicted, arguments.predictedMapping, "--probe-mapping-predicted")
+          .latLong,
+      openProbe(arguments.truth, arguments.trueMapping, "--probe-mapping-true").latLong};
   std::optional<BusyLine> busy("rendering the spheres");
   const Spheres spheres = probeSpheres(probes, arguments.diameter);
   busy.reset();
@@ -126,9 +127,10 @@ void addProbeSpheresCommand(Command probe) {
                     "write a picture: the spheres under PREDICTED, under TRUE, and the difference "
                     "(blue: PREDICTED is too dark; red: too bright)");
   command.addWithDefault("--size", a.diameter, "diameter of a sphere in pixels").inRange(8, 1024);
-  command.addOption("--mapping-predicted", a.predictedMapping,
+  command.addOption("--probe-mapping-predicted,--mapping-predicted", a.predictedMapping,
                     "the mapping of PREDICTED; auto detects it");
-  command.addOption("--mapping-true", a.trueMapping, "the mapping of TRUE; auto detects it");
+  command.addOption("--probe-mapping-true,--mapping-true", a.trueMapping,
+                    "the mapping of TRUE; auto detects it");
   command.footer(
       "The spheres: grey diffuse, matte silver and mirror, each alone. RMSE is in the probes' "
       "units; si-RMSE is that after the best factor, `scale`, on PREDICTED; the angular error is "

@@ -43,10 +43,9 @@ void splitProbe(const SplitArguments& arguments) {
         {vec3(sun.direction), Rgb(sun.irradiance), float(arguments.angle.value_or(sun.angle))});
   writeProbe(arguments.rest, extraction.remainder);
   writeLights(arguments.suns, rig);
-  fmt::print("suns        {}\n", extraction.suns.size());
+  say("suns        {}\n", extraction.suns.size());
   for (const DirectionalLight& light : rig.lights)
-    fmt::print(
-        "sun         direction {:.4f} {:.4f} {:.4f}, irradiance {:.4g} {:.4g} {:.4g}, diameter "
+    say("sun         direction {:.4f} {:.4f} {:.4f}, irradiance {:.4g} {:.4g} {:.4g}, diameter "
         "{:.4g} degrees\n",
         light.direction.x, light.direction.y, light.direction.z, light.irradiance.x,
         light.irradiance.y, light.irradiance.z, light.angle);
@@ -90,7 +89,7 @@ void addProbeSplitCommand(Command probe) {
       "--angle", a.angle,
       "diameter of the suns in degrees, in place of the measured one; the Sun's is 0.5323");
   command.addOption("--probe-mask", a.probe.mask, kMaskHelp);
-  command.addOption("--mapping", a.probe.mapping, "the mapping of PROBE; auto detects it");
+  command.addOption("--probe-mapping", a.probe.mapping, "the mapping of PROBE; auto detects it");
 }
 
 void addProbeAddSunCommand(Command probe) {
@@ -100,7 +99,7 @@ void addProbeAddSunCommand(Command probe) {
   command.addRequired("OUT", a.out, "the lat-long map to write: .exr, .hdr, .pfm or .png");
   command.addRequired("--lights", a.lights,
                       "the .json of `probe split` or `lights`; its ambient light is added too");
-  command.addOption("--mapping", a.probe.mapping, "the mapping of IN; auto detects it");
+  command.addOption("--probe-mapping", a.probe.mapping, "the mapping of IN; auto detects it");
 }
 
 }  // namespace chromeball

@@ -44,12 +44,12 @@ void refine(std::vector<TileEntry>& entries, std::vector<Tile>& tiles) {
   for (size_t i = 0; i < tiles.size(); ++i) {
     entries[i].pose = tiles[i].pose.angles();
     const Rotation::Angles& pose = entries[i].pose;
-    fmt::print("{}  yaw {:.4f}, pitch {:.4f}, roll {:.4f}: turned by {:.4f} degrees\n",
-               printable(entries[i].file), pose.yaw, pose.pitch, pose.roll, refinement.turns[i]);
+    say("{}  yaw {:.4f}, pitch {:.4f}, roll {:.4f}: turned by {:.4f} degrees\n",
+        printable(entries[i].file), pose.yaw, pose.pitch, pose.roll, refinement.turns[i]);
   }
   if (tiles.size() < 2) return;  // nothing overlaps
-  fmt::print("overlaps differ by {:.3g}% before and {:.3g}% after, RMS of the log radiance\n",
-             100 * refinement.before, 100 * refinement.after);
+  say("overlaps differ by {:.3g}% before and {:.3g}% after, RMS of the log radiance\n",
+      100 * refinement.before, 100 * refinement.after);
 }
 
 std::vector<double> gainsOf(const ProbeStitchArguments& arguments, const std::vector<Tile>& tiles) {
@@ -62,7 +62,7 @@ std::vector<double> gainsOf(const ProbeStitchArguments& arguments, const std::ve
     }
   }();
   for (size_t i = 0; i < tiles.size(); ++i)
-    fmt::print("{}  gain {:.4f}\n", printable(tiles[i].name), gains[i]);
+    say("{}  gain {:.4f}\n", printable(tiles[i].name), gains[i]);
   return gains;
 }
 

@@ -152,16 +152,16 @@ void print(const SunFromBall& result, const Direction& direction, const BallSamp
   const auto width = direction.width
                          ? fmt::format(", clipped {:.3g} degrees wide", *direction.width)
                          : std::string();
-  fmt::print("direction   {}{}\n", triple(result.sun.direction), width);
-  fmt::print("alpha       {}, of a sun of irradiance pi\n", triple(result.alpha));
-  fmt::print("irradiance  {}\n", triple(result.sun.irradiance));
-  fmt::print("radiance    {}, {:g} degrees wide\n", triple(result.radiance()), result.sun.angle);
-  fmt::print("samples     {} of {} pixel{}\n", ball.samples.size(), ball.block * ball.block,
-             ball.block == 1 ? "" : "s");
-  fmt::print("residual    {:.3g}% of the mean, RMS; {:.3g}% without the sun\n", 100 * result.rms,
-             100 * result.rmsOfProbe);
-  fmt::print("explained   {:.3g}% of the samples within {:g}% of the mean\n",
-             100 * result.explained, 100 * kExplained);
+  say("direction   {}{}\n", triple(result.sun.direction), width);
+  say("alpha       {}, of a sun of irradiance pi\n", triple(result.alpha));
+  say("irradiance  {}\n", triple(result.sun.irradiance));
+  say("radiance    {}, {:g} degrees wide\n", triple(result.radiance()), result.sun.angle);
+  say("samples     {} of {} pixel{}\n", ball.samples.size(), ball.block * ball.block,
+      ball.block == 1 ? "" : "s");
+  say("residual    {:.3g}% of the mean, RMS; {:.3g}% without the sun\n", 100 * result.rms,
+      100 * result.rmsOfProbe);
+  say("explained   {:.3g}% of the samples within {:g}% of the mean\n", 100 * result.explained,
+      100 * kExplained);
 }
 
 void run(const ProbeSunArguments& arguments) {
@@ -177,7 +177,7 @@ void run(const ProbeSunArguments& arguments) {
   checkDistinct({arguments.output, arguments.lights, arguments.residual},
                 {arguments.probe, arguments.ball, arguments.mask});
 
-  LoadedProbe probe = openProbe(arguments.probe, arguments.mapping, "--mapping");
+  LoadedProbe probe = openProbe(arguments.probe, arguments.mapping, "--probe-mapping");
   const Direction direction = directionOf(arguments, probe);
   const BallSamples samples = readBall(arguments, ball);
   const SunFromBall result = solveSun(probe.latLong, samples, direction.direction, arguments.angle);
@@ -232,7 +232,7 @@ void addProbeSunCommand(Command probe) {
   command.addOption("--residual", a.residual,
                     "an image to write of what neither probe nor sun explain: .exr, or .png in "
                     "which black and white are 10% of the mean");
-  command.addOption("--mapping", a.mapping, "the mapping of CLIPPED; auto detects it");
+  command.addOption("--probe-mapping", a.mapping, "the mapping of CLIPPED; auto detects it");
   command.addFlag("--json", a.json, "print JSON");
 }
 

@@ -10,8 +10,6 @@
 #include <limits>
 #include <string>
 
-#include "messages.h"
-
 namespace chromeball {
 namespace {
 
@@ -38,6 +36,12 @@ std::string timesInWords(double fraction, double elapsed) {
 }
 
 }  // namespace
+
+ProgressStyle progressStyle(const Verbosity& given) {
+  if (given.progress) return ProgressStyle::Bar;
+  if (given.quiet) return ProgressStyle::None;
+  return isatty(STDERR_FILENO) ? ProgressStyle::Bar : ProgressStyle::Lines;
+}
 
 ProgressBar::ProgressBar(ProgressStyle style, std::string title)
     : style_(style), title_(std::move(title)) {}
@@ -80,12 +84,10 @@ void ProgressBar::draw(double fraction, const std::string& times) {
   }
 }
 
-bool ProgressBar::isTerminal() { return isatty(STDERR_FILENO); }
-
 BusyLine::BusyLine(std::string title) {
-  if (!ProgressBar::isTerminal()) return;
+  if (progressStyle() != ProgressStyle::Bar) return;
   thread_ = std::thread([this, title = std::move(title)] {
-    ProgressBar bar(true, title);
+    ProgressBar bar(ProgressStyle::Bar, title);
     std::unique_lock lock(mutex_);
     while (!changed_.wait_for(lock, std::chrono::seconds(1), [this] { return done_; }))
       bar.update(std::numeric_limits<double>::quiet_NaN());

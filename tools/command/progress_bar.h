@@ -10,26 +10,26 @@
 #include <thread>
 
 #include "base/line_times.h"
+#include "messages.h"
 
 namespace chromeball {
 
 // Lines come as LineTimes (base/line_times.h) says.
 enum class ProgressStyle { None, Bar, Lines };
 
+// Lines where standard error is no terminal, unless the bar is asked for.
+ProgressStyle progressStyle(const Verbosity& given = verbosity());
+
 // A bar is drawn at most ten times a second, and at the end.
 class ProgressBar {
  public:
   explicit ProgressBar(ProgressStyle style, std::string title = "rendering");
-  explicit ProgressBar(bool shown, std::string title = "rendering")
-      : ProgressBar(shown ? ProgressStyle::Bar : ProgressStyle::None, std::move(title)) {}
   ~ProgressBar();  // clears the line
 
   // `fraction` of the work done, in [0, 1]; NaN if it is unknown.
   void update(double fraction);
   // Shown after the times where the terminal is wide enough, from the next update on.
   void describe(std::string text) { description_ = std::move(text); }
-
-  static bool isTerminal();  // whether standard error is one
 
  private:
   void draw(double fraction, const std::string& times);
@@ -43,7 +43,7 @@ class ProgressBar {
 };
 
 // The time elapsed, during work that cannot tell how much of it is done: a line that is shown from
-// construction to destruction, which clears it; only on a terminal.
+// construction to destruction, which clears it; on a terminal, or by --progress.
 class BusyLine {
  public:
   explicit BusyLine(std::string title);  // of the work: "lights"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// chromeball reference: prints docs/scene-file.md. For maintainers; --help does not list it.
+// chromeball reference: prints docs/scene-file.md.
 #include <fmt/format.h>
 
 #include "commands.h"
@@ -8,9 +8,8 @@
 namespace chromeball {
 
 void addReferenceCommand(Command app) {
-  app.addCommand("reference", "Print the reference page of the scene file").hidden().callback([] {
-    fmt::print("{}", settingsPage());
-  });
+  app.addCommand("reference", "Print the page of all keys and options, docs/scene-file.md")
+      .callback([] { fmt::print("{}", settingsPage()); });
 }
 
 }  // namespace chromeball

@@ -26,7 +26,7 @@ GivenOptions optionsOfSum(const RelightOptions& a) {
   return {{a.domain != "auto", "--domain"},
           {a.keep != "100%", "--keep"},
           {a.keepLight != "100%", "--keep-light"},
-          {a.rotation != Rotation(), "--rotation"}};
+          {a.rotation != Rotation(), "--probe-rotation"}};
 }
 
 GivenOptions optionsOfDisplay(const RelightOptions& a) {
@@ -39,7 +39,8 @@ void checkOutput(const RelightOptions& a) {
   if (!a.pixel.empty()) {
     constexpr const char* kWhy = "has no effect with --reflectance-function; leave it out";
     refuseGiven(optionsOfSum(a), kWhy);
-    refuseGiven({{a.scale != "1", "--scale"}, {a.mapping != "auto", "--mapping"}}, kWhy);
+    refuseGiven({{a.scale != "1", "--probe-scale"}, {a.mapping != "auto", "--probe-mapping"}},
+                kWhy);
   }
   if (a.probes.size() > 1) throwInput("--probe: give one; --preview takes several");
   if (a.out.empty()) throwInput("--output: needs a name; or give --preview");
@@ -86,7 +87,7 @@ void check(const RelightOptions& a) {
     throwInput("--images, --directions: go together");
   if (a.probes.empty() == a.pixel.empty())
     throwInput("--probe, --reflectance-function: give one of the two");
-  parseColor(a.scale, "--scale");
+  parseColor(a.scale, "--probe-scale");
   parseToneOperator(a.tone);
   if (!std::isfinite(a.exposure)) throwInput("--exposure: must be a finite number of stops");
   a.preview.empty() ? checkOutput(a) : checkPreview(a);
@@ -115,9 +116,9 @@ void addRelightCommand(Command app) {
   command.addOption("--probe", a.probes, "the light; with --preview several, each by --probe")
       .typeName("TEXT")
       .takesAll();
-  command.addWithDefault("--mapping", a.mapping, "of the probe; auto detects it");
+  command.addWithDefault("--probe-mapping", a.mapping, "of the probe; auto detects it");
   addRotationOption(command, a.rotation);
-  command.addWithDefault("--scale", a.scale, "X or R,G,B: factor of the probe");
+  command.addWithDefault("--probe-scale", a.scale, "X or R,G,B: factor of the probe");
   command.addWithDefault("--domain", a.domain,
                          "where the sum is made: pixel, dct (lat-long), haar (cube), sh; the "
                          "result is the same, unless some is left out");
@@ -150,7 +151,6 @@ void addRelightCommand(Command app) {
   command.addOption("--exposure", a.exposure, "of a .png, in stops");
   command.addWithDefault("--tonemap", a.tone,
                          fmt::format("of a .png: {}", fmt::join(toneOperatorNames(), ", ")));
-  command.addFlag("--quiet", a.quiet, "print nothing but warnings and errors");
 }
 
 }  // namespace chromeball

@@ -26,7 +26,7 @@ struct RelightOptions {
   float exposure = 0;
   std::optional<double> white;  // of a model: the light that its white stands for
   std::string view;             // "X,Y,Z", metres: the eye, of a model with glossy transfer
-  bool allowsExternal = false, quiet = false;
+  bool allowsExternal = false;
   std::string preview;           // the port; empty: none
   std::optional<double> memory;  // GB
 

@@ -65,10 +65,9 @@ class RelightModel {
           "{} of {} vertices had a negative channel, which was raised to 0: {} light rings there",
           lit.negative, points.size(), file_.basis().name()));
     for (const std::string& line : warnings_) warn(line);
-    if (options_.quiet) return;
-    fmt::print("lit {} vertices in {:.3f} s by {} of {} coefficients of {}, scale {:g}: {}\n",
-               points.size(), seconds, kept_, file_.basis().size(), file_.basis().name(), white,
-               printableName(options_.out));
+    say("lit {} vertices in {:.3f} s by {} of {} coefficients of {}, scale {:g}: {}\n",
+        points.size(), seconds, kept_, file_.basis().size(), file_.basis().name(), white,
+        printableName(options_.out));
   }
 
  private:
@@ -84,15 +83,15 @@ class RelightModel {
     }
     for (const PointResult& point : lit.light.points)
       if (!isFinite(point.mean()))
-        throwInput("{}: the light exceeds the largest float, 3.4e38; give a smaller --scale",
+        throwInput("{}: the light exceeds the largest float, 3.4e38; give a smaller --probe-scale",
                    options_.stage);
     return lit;
   }
 
   std::vector<Rgb> coefficients() {
     const LoadedProbe loaded =
-        openProbe(options_.probes.front(), options_.mapping, "--mapping", options_.quiet);
-    const Rgb scale = parseColor(options_.scale, "--scale");
+        openProbe(options_.probes.front(), options_.mapping, "--probe-mapping");
+    const Rgb scale = parseColor(options_.scale, "--probe-scale");
     const Image map = Probe(loaded.latLong, {}, scale).latLong();
     return file_.basis().project(map, options_.rotation);
   }

@@ -55,7 +55,7 @@ LightStage readPhotographsOf(const RelightOptions& a) {
 StageBands openStage(const RelightOptions& a) {
   if (a.isOfPhotographs()) return StageBands(readPhotographsOf(a));
   StageReader file(a.stage);
-  print(file.messages(), a.quiet);
+  print(file.messages());
   const double rest = relitStageBytes(file.width(), file.height());
   return {std::move(file), memoryOf(a) - rest, a.stage};
 }
@@ -64,7 +64,7 @@ StageBands openStage(const RelightOptions& a) {
 LightStage readStage(const RelightOptions& a) {
   if (a.isOfPhotographs()) return readPhotographsOf(a);
   StageReader file(a.stage);
-  print(file.messages(), a.quiet);
+  print(file.messages());
   checkInMemory(file.basis(), file.width(), file.height(), memoryOf(a) - file.bufferBytes(),
                 "--preview");
   return file.read(0, file.height());
@@ -83,14 +83,15 @@ glm::ivec2 parsePixel(const std::string& text, const StageBands& stage) {
 }
 
 Image loadLight(const RelightOptions& a, const std::string& path) {
-  const LoadedProbe loaded = openProbe(path, a.mapping, "--mapping", a.quiet);
-  return Probe(loaded.latLong, {}, parseColor(a.scale, "--scale")).latLong();
+  const LoadedProbe loaded = openProbe(path, a.mapping, "--probe-mapping");
+  return Probe(loaded.latLong, {}, parseColor(a.scale, "--probe-scale")).latLong();
 }
 
 void checkPictureFinite(const Image& picture, const std::string& path) {
   for (const float texel : picture.texels)
     if (!std::isfinite(texel))
-      throwInput("{}: the picture exceeds the largest float, 3.4e38; give a smaller --scale", path);
+      throwInput("{}: the picture exceeds the largest float, 3.4e38; give a smaller --probe-scale",
+                 path);
 }
 
 void writePicture(const RelightOptions& a, const Image& picture, const DirectionBasis& basis,
@@ -133,10 +134,9 @@ void runRelitPicture(const RelightOptions& a) {
   const RelitStage relit = relitStage(stage, weights, domain, kept);
   checkPictureFinite(relit.picture, a.source());
   writePicture(a, relit.picture, stage.basis());
-  if (!a.quiet)
-    fmt::print("relit {} x {} pixels from {} elements ({}) in {:.2f} s{}: {}\n", stage.width(),
-               stage.height(), stage.basis().size(), stage.basis().name(), watch.seconds(),
-               leftOutInWords(relit, kept), printableName(a.out));
+  say("relit {} x {} pixels from {} elements ({}) in {:.2f} s{}: {}\n", stage.width(),
+      stage.height(), stage.basis().size(), stage.basis().name(), watch.seconds(),
+      leftOutInWords(relit, kept), printableName(a.out));
 }
 
 void runReflectanceFunction(const RelightOptions& a) {
@@ -144,9 +144,8 @@ void runReflectanceFunction(const RelightOptions& a) {
   const glm::ivec2 pixel = parsePixel(a.pixel, stage);
   const Image map = reflectanceFunction(stage.row(pixel.y), pixel.x, 0);
   writePicture(a, map, stage.basis(), {{kMappingAttribute, mappingName(Mapping::LatLong)}});
-  if (!a.quiet)
-    fmt::print("reflectance function of pixel {}, {} ({}), {} x {} directions: {}\n", pixel.x,
-               pixel.y, stage.basis().name(), map.width, map.height, printableName(a.out));
+  say("reflectance function of pixel {}, {} ({}), {} x {} directions: {}\n", pixel.x, pixel.y,
+      stage.basis().name(), map.width, map.height, printableName(a.out));
 }
 
 void runRelightPreview(const RelightOptions& a) {

@@ -321,7 +321,10 @@ void render(const SceneOptions& options) {
 void addRenderCommand(Command app) {
   auto [command, a] =
       app.addCommand<SceneOptions>("render", "Render a scene file or a model to an image", render);
-  addSceneOptions(command, a, SceneCommand::Render);
+  addSceneOptions(
+      command, a, SceneCommand::Render,
+      "  chromeball render helmet.glb --probe studio.hdr --quality draft -o helmet.png\n"
+      "  chromeball render scene.toml --time 60 --denoise -o scene.exr -o scene.png\n");
   command.footer(strategyHelp());
 }
 

@@ -2,6 +2,7 @@
 #include "scene_options.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "front/settings.h"
@@ -71,8 +72,20 @@ constexpr std::string_view kOfPixels[] = {
     "size", "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
     "mis",  "transparent",       "camera-file"};
 
+// What the brief help shows.
+constexpr auto kCommon = std::to_array<const char*>(
+    {"output", "probe", "probe-rotation", "probe-scale", "camera", "size", "quality", "time",
+     "noise", "samples", "denoise", "exposure", "tonemap", "aov", "transparent"});
+
 bool isList(const Setting& setting) {
   return setting.type == SettingType::Choices || setting.type == SettingType::Files;
+}
+
+// Of a list in one text, "NODE,..." or "NAME=VALUE ..."; empty for all else.
+std::string_view separatorOf(const Setting& setting) {
+  if (setting.type != SettingType::Name || setting.argument.find("...") == std::string_view::npos)
+    return "";
+  return setting.argument.find(",...") == std::string_view::npos ? " " : ",";
 }
 
 using Names = std::span<const std::string_view>;
@@ -145,18 +158,18 @@ bool isOptionOf(SceneCommand command, const Setting& setting) {
 }
 
 ProgressStyle SceneOptions::progress() const {
-  if (settings.get<bool>("progress")) return ProgressStyle::Bar;
-  if (quiet()) return ProgressStyle::None;
-  return ProgressBar::isTerminal() ? ProgressStyle::Bar : ProgressStyle::Lines;
+  return progressStyle({.quiet = quiet(), .progress = settings.get<bool>("progress")});
 }
 
-void addSceneOptions(Command app, SceneOptions& options, SceneCommand command) {
+void addSceneOptions(Command app, SceneOptions& options, SceneCommand command,
+                     const std::string& examples) {
   app.addRequired("scene", options.scene, "Scene file (.toml) or model (.gltf, .glb)")
       .typeName("SCENE");
   for (const Setting& setting : settingTable())
     if (!setting.option.empty() && isOptionOf(command, setting))
       addSettingOption(app, setting, options.settings);
   app.widerNames();
+  app.briefHelp({kCommon.begin(), kCommon.end()}, examples);
 }
 
 void addSettingOption(Command app, const Setting& setting, Settings& settings) {
@@ -181,9 +194,14 @@ void addSettingOption(Command app, const Setting& setting, Settings& settings) {
         .group(titleOf(setting));
     return;
   }
-  Option option = app.addParsedOption(names, set, help);
+  const auto setJoined = [&setting, set](const std::vector<std::string>& words) {
+    set({fmt::format("{}", fmt::join(words, separatorOf(setting)))});
+  };
+  const bool isText = !separatorOf(setting).empty();
+  Option option =
+      isText ? app.addParsedOption(names, setJoined, help) : app.addParsedOption(names, set, help);
   option.typeName(std::string(setting.argument)).group(titleOf(setting));
-  if (isList(setting)) option.takesAll();
+  if (isText || isList(setting)) option.takesAll();
 }
 
 std::string optionText(const Setting& setting, const std::string& value) {

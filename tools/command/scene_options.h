@@ -28,8 +28,10 @@ enum class SceneCommand { Render, Compare, Bake, Basis, BasisVertices };
 
 bool isOptionOf(SceneCommand command, const Setting& setting);
 
-// `options` is filled when the command line is parsed; it must outlive `app`.
-void addSceneOptions(Command app, SceneOptions& options, SceneCommand command);
+// `options` is filled when the command line is parsed; it must outlive `app`. `examples`: of the
+// brief help.
+void addSceneOptions(Command app, SceneOptions& options, SceneCommand command,
+                     const std::string& examples = "");
 
 // The same for one setting that has an option.
 void addSettingOption(Command app, const Setting& setting, Settings& settings);

@@ -51,8 +51,8 @@ def parse_entry(text):
 
 
 def read_help(words):
-    """The command's --help, with those of its subcommands below it."""
-    lines = subprocess.run([COMMAND, *words, '--help'], check=True, capture_output=True,
+    """The command's whole --help, with those of its subcommands below it."""
+    lines = subprocess.run([COMMAND, *words, '--help', 'all'], check=True, capture_output=True,
                            text=True).stdout.splitlines()
     usage = next(i for i, line in enumerate(lines) if line.startswith('Usage:'))
     command = Command(words, ' '.join(line.strip() for line in lines[:usage]).strip())

@@ -119,7 +119,7 @@ TransferFile::TransferFile(const std::string& path, ExternalFiles external, cons
     if (data_.turned.contains(scene_.instances[i].node))
       throwInput(
           "{}: node \"{}\" is turned or mirrored, but its transfer is for light of fixed "
-          "directions; turn the model before `basis`, or the light (--rotation)",
+          "directions; turn the model before `basis`, or the light (--probe-rotation)",
           path, nodeName(i));
     const size_t vertices = scene_.meshes[size_t(scene_.instances[i].mesh)].positions.size();
     const auto arrays = data_.attributes.find(scene_.instances[i].node);

@@ -78,7 +78,7 @@ def real_ball(run):
     run("probe", "assemble", folder / "calib_hdr.hdr", "-o", "ours.pfm", "--circle", "190.5,190.5,190.5", "--size", size)
     flipped = deviation(read_pfm(run.scratch / "ours.pfm"), theirs)
     run("probe", "convert", folder / "calib_hdr.hdr", "ours.pfm", "--from", "mirror-ball", "--to", "lat-long", "--size",
-        size, "--rotation", 180)
+        size, "--probe-rotation", 180)
     unflipped = deviation(read_pfm(run.scratch / "ours.pfm"), theirs)
     return [Row(
         "HDRI 9.4.1: a photograph of a ball is mirrored",
