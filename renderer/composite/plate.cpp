@@ -38,8 +38,8 @@ Image scaledPlate(const Image& image, int width, int height, const std::string& 
   return resampled(image, width, height);
 }
 
-std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
-                                   int width, int height) {
+std::vector<size_t> pixelsThatShow(int ground, const Bounds& part, const Scene& localScene,
+                                   const Camera& camera, int width, int height) {
   const Accel accel(localScene);
   const CameraRays rays(camera, float(width) / float(height));
   std::vector<size_t> pixels;
@@ -49,7 +49,11 @@ std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Ca
       rays.ray((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height), ray.origin,
                ray.direction);
       Hit hit;
-      if (accel.intersect(ray, 0, hit) && localScene.instances[hit.instance].node == ground)
+      if (!accel.intersect(ray, 0, hit) || localScene.instances[hit.instance].node != ground)
+        continue;
+      const vec3 point = ray.origin + hit.distance * ray.direction;
+      if (point.x >= part.min.x && point.x <= part.max.x && point.z >= part.min.z &&
+          point.z <= part.max.z)
         pixels.push_back(size_t(y) * size_t(width) + size_t(x));
     }
   return pixels;

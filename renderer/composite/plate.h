@@ -8,6 +8,7 @@
 #include "base/message.h"
 #include "image/image.h"
 #include "math/vec.h"
+#include "scene/bounds.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -32,9 +33,10 @@ struct PlateScale {
   size_t pixels = 0;   // that show the ground
 };
 
-// The pixels, as indices into the plate, whose middle shows the node `ground` of the local scene.
-std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
-                                   int width, int height);
+// The pixels, as indices into the plate, whose middle shows the node `ground` of the local scene,
+// at a point that `part` holds, seen from above.
+std::vector<size_t> pixelsThatShow(int ground, const Bounds& part, const Scene& localScene,
+                                   const Camera& camera, int width, int height);
 
 // The scale at which a matte ground of this reflectance has the median radiance of the plate: per
 // channel pi L / (reflectance E), with E the irradiance of the ground by the probe with scale 1,

@@ -213,6 +213,35 @@ void prepareLocalScene(LoadedScene& loaded) {
                float(composite.roughness.value_or(0.2)));
 }
 
+namespace {
+
+// The pixels that show the ground around the objects, no farther from their box than its diagonal:
+// there their shadows fall, while the rest of the plane is often not the ground in the photograph.
+// All that show the plane if these are few.
+std::vector<size_t> pixelsOfGround(const LoadedScene& loaded) {
+  constexpr size_t kFew = 64;
+  Scene local = loaded.scene;
+  local.instances.clear();
+  Bounds objects;
+  for (size_t i = 0; i < loaded.isObject.size(); ++i) {
+    const Instance& instance = loaded.scene.instances[i];
+    if (loaded.isObject[i])
+      objects.add(bounds(loaded.scene, instance));
+    else
+      local.instances.push_back(instance);
+  }
+  const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
+  const auto within = [&](const Bounds& part) {
+    return pixelsThatShow(int(ground - local.nodeNames.begin()), part, local, loaded.camera,
+                          loaded.description.settings.width, loaded.description.settings.height);
+  };
+  const float reach = float(glm::length(objects.size()));
+  const std::vector<size_t> around = within({objects.min - reach, objects.max + reach});
+  return around.size() >= kFew ? around : within({vec3(-INFINITY), vec3(INFINITY)});
+}
+
+}  // namespace
+
 void scaleProbeByPlate(LoadedScene& loaded) {
   const RenderDescription& description = loaded.description;
   if (!description.probe.isScaledByPlate) return;
@@ -222,14 +251,7 @@ void scaleProbeByPlate(LoadedScene& loaded) {
         "{}: scale = \"plate\" needs the probe as the only light; the model has lights of its "
         "own: leave them out with `lights = \"off\"` in [lighting]",
         location);
-  Scene local = loaded.scene;
-  local.instances.clear();
-  for (size_t i = 0; i < loaded.isObject.size(); ++i)
-    if (!loaded.isObject[i]) local.instances.push_back(loaded.scene.instances[i]);
-  const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
-  const std::vector<size_t> pixels =
-      pixelsThatShow(int(ground - local.nodeNames.begin()), local, loaded.camera,
-                     description.settings.width, description.settings.height);
+  const std::vector<size_t> pixels = pixelsOfGround(loaded);
   const Rgb irradiance = irradianceOn(loaded.probe, vec3(0, 1, 0));
   const CompositeEntry& entry = description.composite->entry;
   const auto isPositive = [](const Rgb& c) { return c.x > 0 && c.y > 0 && c.z > 0; };
