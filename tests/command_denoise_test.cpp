@@ -2,6 +2,7 @@
 // chromeball render --denoise and chromeball image denoise.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -20,9 +21,11 @@ class CommandDenoise : public testing::Test {
 
   std::vector<std::string> render(const std::string& output,
                                   std::vector<std::string> more = {}) const {
-    std::vector<std::string> words{"render",    scene("demo"), "--size", "48x32",
-                                   "--samples", "16",          "-o",     output};
+    std::vector<std::string> words{"render", scene("demo"), "-o", output};
     words.insert(words.end(), more.begin(), more.end());
+    const auto lacks = [&](const char* option) { return std::ranges::count(more, option) == 0; };
+    if (lacks("--size")) words.insert(words.end(), {"--size", "48x32"});
+    if (lacks("--samples")) words.insert(words.end(), {"--samples", "16"});
     return words;
   }
   static std::string scene(const std::string& name) {
@@ -34,6 +37,8 @@ class CommandDenoise : public testing::Test {
     return result.out;
   }
 };
+
+class SlowCommandDenoise : public CommandDenoise {};
 
 std::vector<float> layer(const std::string& path, const std::string& name) {
   const ImageFile file = readImageFile(path);
@@ -117,6 +122,87 @@ TEST_F(CommandDenoise, OfACompositeKeepsBothImages) {
   for (size_t i = 0; i < 72 * 10 * 3; ++i) same += color[i] == noisy[i];
   EXPECT_GT(same, 1000);
   EXPECT_GT(jsonOfFile(stats)["denoised"]["noise"], 0.0);
+}
+
+// The picture so far is denoised as that of a finished render is.
+TEST_F(SlowCommandDenoise, CtrlCDenoisesWhatThereIs) {
+  const std::string out = folder_ / "out.exr", stats = folder_ / "stats.json";
+  const CommandResult result =
+      runExecutable(render(out, {"--samples", "100000000", "--time", "600", "--denoise", "--stats",
+                                 stats, "--progress"}),
+                    " samples");  // a pass is done
+  EXPECT_EQ(result.status, 130);
+  EXPECT_TRUE(
+      result.error.ends_with("chromeball: interrupted; the image so far is saved, "
+                             "denoised\n"))
+      << result.error;
+  EXPECT_NE(layer(out, ""), layer(out, "noisy"));
+  EXPECT_EQ(layer(out, "denoise_error").size(), 48u * 32);
+  const Metadata header = readExrMetadata(out);
+  EXPECT_EQ(std::get<std::string>(header.at("interrupted")), "true");
+  EXPECT_EQ(std::get<std::string>(header.at("denoise")), "true");
+  EXPECT_EQ(header.count("denoised_noise"), 1u);
+  const auto json = jsonOfFile(stats);
+  EXPECT_TRUE(json["interrupted"].get<bool>());
+  EXPECT_EQ(json["samples_per_pixel"], std::get<int>(header.at("samples")));
+  EXPECT_GT(json["denoised"]["noise"], 0.0);
+}
+
+// A second Ctrl-C, and SIGTERM, do not wait for the denoiser; what it needs is saved.
+TEST_F(SlowCommandDenoise, ASecondCtrlCLeavesWithoutDenoising) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string out = folder_ / "out.exr", later = folder_ / "later.exr";
+    const CommandResult result = runExecutable(
+        render(out, {"--size", "480x320", "--samples", "100000000", "--time", "600", "--denoise",
+                     "--progress"}),
+        " samples", signal, {}, signal == SIGINT ? "Ctrl-C again leaves without" : "");
+    EXPECT_EQ(result.status, 130);
+    EXPECT_TRUE(
+        result.error.ends_with("chromeball: interrupted; the image so far is saved, not "
+                               "denoised\n"))
+        << result.error;
+    const Metadata header = readExrMetadata(out);
+    EXPECT_EQ(std::get<std::string>(header.at("interrupted")), "true");
+    EXPECT_EQ(std::get<std::string>(header.at("denoise")), "false");
+    EXPECT_EQ(header.count("denoised_noise"), 0u);
+    EXPECT_FALSE(findLayer(readImageFile(out), "noisy"));
+    run({"image", "denoise", out, later});
+    EXPECT_EQ(layer(later, "noisy"), layer(out, ""));
+    EXPECT_NE(layer(later, ""), layer(out, ""));
+  }
+}
+
+TEST_F(CommandDenoise, OfAPartIsLeftToTheMerge) {
+  const CommandResult part =
+      runCommand(render(folder_ / "part.exr", {"--denoise", "--shard", "1/2"}));
+  EXPECT_NE(part.error.find("chromeball: --denoise: a part is denoised when all are merged"),
+            std::string::npos)
+      << part.error;
+}
+
+// Neither at 4 samples nor at 16 is a figure of what remains above that of the input, and the line
+// says the same as the statistics.
+TEST_F(CommandDenoise, NoFigureExceedsTheInputs) {
+  for (const std::string samples : {"4", "16"}) {
+    const std::string out = folder_ / "out.exr", stats = folder_ / "stats.json";
+    const std::string said =
+        run(render(out, {"--samples", samples, "--denoise", "--stats", stats}));
+    const auto json = jsonOfFile(stats);
+    EXPECT_LE(json["denoised"]["noise"], json["noise"]);
+    EXPECT_LE(json["denoised"]["median"], json["noise_median"]);
+    EXPECT_LE(json["denoised"]["p95"], json["noise_p95"]);
+    EXPECT_LT(json["denoised"]["p95"], 1.0);
+    const Metadata header = readExrMetadata(out);
+    EXPECT_NEAR(std::get<float>(header.at("denoised_noise_p95")), json["denoised"]["p95"], 1e-6);
+    const auto share = [&](const std::string& before, const std::string& after) {
+      const size_t begin = said.find(before) + before.size();
+      EXPECT_NE(said.find(after, begin), std::string::npos) << said;
+      return 0.01 * std::stod(said.substr(begin));
+    };
+    const double p95 = json["noise_p95"], median = json["denoised"]["median"];
+    EXPECT_NEAR(share("typical pixel, above ", "% in the worst 5%"), p95, 0.006);
+    EXPECT_NEAR(share("denoised to about ", "%, and "), median, 0.006);
+  }
 }
 
 // Files that someone has edited.

@@ -170,7 +170,7 @@ TEST_F(SlowCommandGround, ScalesTheProbeByThePlate) {
   EXPECT_NE(messages_.find("they scatter by 0%"), std::string::npos) << messages_;
   const auto stats = jsonOfFile(path("stats.json"));
   EXPECT_NEAR(stats["probe_scale"]["scale"][2], 0.5, 1e-4);
-  EXPECT_GT(stats["probe_scale"]["pixels"], kWidth * kHeight / 3);
+  EXPECT_GT(stats["probe_scale"]["pixels"], kWidth * kHeight / 5);
   // The ground rendered with it has the plate's radiance, but for noise.
   const Image ground = *findLayer(file, "l_noobj");
   glm::dvec3 sum(0);
@@ -184,6 +184,41 @@ TEST_F(SlowCommandGround, ScalesTheProbeByThePlate) {
   render(scene(lines, "", "scale = \"plate\""), {"--probe-scale", "1"});
   EXPECT_EQ(messages_.find("the probe's scale is"), std::string::npos);
   EXPECT_NE(messages_.find(kIdle), std::string::npos) << messages_;
+}
+
+// A bright desk in a dark room, and a probe of another colour: the light is that of the desk, on
+// which the shadow has the desk's hue.
+TEST_F(SlowCommandGround, TheGroundAroundTheObjectsTellsTheScale) {
+  const auto isDesk = [](int x, int y) { return y > kHeight / 2 && x > 8 && x < 40; };
+  for (size_t i = 0; i < plate_.pixels(); ++i) {
+    const int x = int(i) % kWidth, y = int(i) / kWidth;
+    plate_.setRgb(i, isDesk(x, y) ? Rgb(0.6f, 0.65f, 0.7f) : Rgb(0.09f, 0.05f, 0.03f));
+  }
+  writeImage(path("plate.exr"), plate_);
+  const std::string lines = "ground = true", light = "scale = \"plate\"";
+  render(scene(lines, "", light), {"--stats", path("stats.json")});
+  EXPECT_EQ(messages_.find("too faint"), std::string::npos) << messages_;
+  const auto linear = jsonOfFile(path("stats.json"))["probe_scale"];
+
+  writeImage(path("plate.png"), plate_);
+  std::string photograph = fileContents(scene(lines, "", light));
+  photograph.replace(photograph.find("plate.exr"), 9, "plate.png");
+  std::ofstream(path("photograph.toml")) << photograph;
+  const Image shadow = *findLayer(
+      render(path("photograph.toml"), {"--samples", "256", "--stats", path("stats.json")}),
+      "difference");
+  // A white surface would be 1: the reflectance is the desk's luminance, at most 0.5.
+  EXPECT_NE(messages_.find("with reflectance 0.5;"), std::string::npos) << messages_;
+  const auto found = jsonOfFile(path("stats.json"))["probe_scale"];
+  EXPECT_NEAR(double(found["scale"][1]) / double(linear["scale"][1]), 0.5, 0.01);
+  glm::dvec3 sum(0);
+  for (size_t i = 0; i < shadow.pixels(); ++i)
+    if (const Rgb change = shadow.rgb(i); maxComponent(change) < 0) sum += glm::dvec3(change);
+  EXPECT_LT(sum.y, -0.5);
+  // The sun is warmer than the sky. In light of the dark room's colour, under which the desk would
+  // have to be whiter than white, the ratios are 1.8 and 0.6.
+  EXPECT_NEAR(sum.x / sum.y, 0.6 / 0.65, 0.12);
+  EXPECT_NEAR(sum.z / sum.y, 0.7 / 0.65, 0.12);
 }
 
 TEST_F(SlowCommandGround, RefusesWhatDoesNotFit) {

@@ -418,6 +418,50 @@ TEST(SlowCommandRender, StopsAtTheTimeOrTheNoise) {
   EXPECT_GT(measured["noise"].get<double>(), 0.005);
 }
 
+// The samples are at an end before the noise that was asked for; a limit that is met says nothing.
+TEST(CommandRender, SaysThatTheNoiseIsHigherThanAskedFor) {
+  const RenderScene scene;
+  const auto said = [&](const char* noise) {
+    const CommandResult result = scene.renderScene(
+        scene.model, {"--probe", scene.gradient, "--size", "32x24", "--samples", "4", "--noise",
+                      noise, "-o", scene.out / "a.exr", "--stats", scene.out / "a.json"});
+    EXPECT_EQ(result.status, 0) << result.error;
+    return result.error;
+  };
+  const std::string text = said("0.1");
+  EXPECT_NE(text.find("chromeball: --noise: the noise is "), std::string::npos) << text;
+  EXPECT_NE(text.find("%, not 0.1%: the limit of 4 samples per pixel ended the render before; see "
+                      "--samples"),
+            std::string::npos)
+      << text;
+  EXPECT_GT(scene.stats("a.json")["noise"], 0.001);
+  EXPECT_EQ(said("99").find("the noise is"), std::string::npos);
+}
+
+TEST(CommandRender, SaysThatNothingWasClamped) {
+  const RenderScene scene;
+  const auto said = [&](const char* most) {
+    return scene
+        .renderScene(scene.model, {"--probe", scene.gradient, "--size", "16x12", "--samples", "2",
+                                   "--clamp", most, "-o", scene.out / "a.exr"})
+        .error;
+  };
+  EXPECT_NE(said("1e9").find("chromeball: --clamp: no sample was above 1e+09"), std::string::npos);
+  EXPECT_EQ(said("0.01").find("no sample"), std::string::npos);
+}
+
+TEST(CommandRender, WritesAMapOfTheNoise) {
+  const RenderScene scene;
+  scene.render({"--probe", scene.gradient, "--size", "700x60", "--samples", "2", "-o",
+                scene.out / "a.exr", "--noise-map", scene.out / "map.png"});
+  const ImageFile map = readImageFile(scene.out / "map.png");
+  EXPECT_EQ(map.image.width, 234);  // squares of 3 pixels
+  EXPECT_EQ(map.image.height, 20);
+  expectError({"render", scene.model, "--probe", scene.gradient, "-o", scene.out / "a.exr",
+               "--noise-map", scene.out / "map.exr"},
+              "map.exr");
+}
+
 TEST(SlowCommandRender, AnInterruptSavesTheImageSoFar) {
   const RenderScene scene;
   const CommandResult result =

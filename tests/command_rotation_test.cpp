@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "base/hash.h"
 #include "base/json.h"
 #include "front/arguments.h"
 #include "gltf_writer.h"
@@ -190,12 +191,35 @@ TEST_F(Turned, AlignPrintsTheRotationAndWritesTheTurnedProbe) {
   EXPECT_NEAR(found["roll"].get<double>(), 30, 3 * error);
   EXPECT_GT(found["correlation"].get<double>(), 0.98);
   EXPECT_FALSE(found["ambiguous"].get<bool>());
+  EXPECT_TRUE(found["agrees"].get<bool>());
   EXPECT_EQ(found["quaternion"].size(), 4u);
   const json again = parseJson(run({"probe", "align", turned, out, "--json"}).out);
   EXPECT_NEAR(std::fabs(again["quaternion"][3].get<double>()), 1, 1e-5);
   const CommandResult text = run({"probe", "align", turned, studio});
   EXPECT_NE(text.out.find("rotation         yaw -"), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("standard error   "), std::string::npos) << text.out;
+  EXPECT_EQ(text.error, "");
+}
+
+class SlowTurned : public Turned {};
+
+// Both are bright above and dark below, and have nothing else in common.
+TEST_F(SlowTurned, AlignFindsNoAgreementOfDifferentPlaces) {
+  const auto place = [&](const std::string& name, uint64_t seed) {
+    const Image probe = colorImage(64, 32, [&](int x, int y) {
+      const float patch = toUnit(uint32_t(hash(uint64_t(y / 4 * 16 + x / 4), seed)));
+      return Rgb((y < 16 ? 1.0f : 0.3f) * std::exp(2.5f * patch));
+    });
+    writeImage(path(name), probe);
+    return path(name);
+  };
+  const std::string a = place("a.exr", 1), b = place("b.exr", 2);
+  const CommandResult result = run({"probe", "align", a, b, "--json"});
+  EXPECT_NE(result.error.find("warning: found no agreement: the correlation is 0."),
+            std::string::npos)
+      << result.error;
+  const json found = parseJson(result.out);
+  EXPECT_FALSE(found["agrees"].get<bool>());
 }
 
 TEST_F(Turned, AlignSaysWhatItCannotTell) {

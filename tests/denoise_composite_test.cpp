@@ -64,7 +64,7 @@ TEST(SlowDenoiseComposite, ReducesTheErrorAndKnowsIt) {
     const Denoised found = setup.denoised(noisy, mode);
     const double after = relMse(found.color, reference);
     EXPECT_LT(after, before / 2) << int(mode);
-    const double estimate = remainingNoise(found);
+    const double estimate = remainingNoise(relativeErrors(found));
     EXPECT_GT(estimate, 0.5 * std::sqrt(after)) << int(mode);
     EXPECT_LT(estimate, 2 * std::sqrt(after)) << int(mode);
   }

@@ -90,7 +90,7 @@ TEST(Denoise, KeepsAnExactImage) {
   const Denoised denoised = run(input);
   for (size_t i = 0; i < denoised.color.texels.size(); ++i)
     EXPECT_NEAR(denoised.color.texels[i], input.parts[0].mean.texels[i], 1e-5f);
-  EXPECT_LT(remainingNoise(denoised), 1e-4);
+  EXPECT_LT(remainingNoise(relativeErrors(denoised)), 1e-4);
 }
 
 // Details above the noise survive: the filter's error is known to exceed the noise there.
@@ -235,7 +235,8 @@ TEST(Denoise, KeepsAnEmptyBackground) {
       ASSERT_EQ(denoised.color.rgb(x, y), Rgb(0));
       ASSERT_EQ(*denoised.error.at(x, y), 0);
     }
-  EXPECT_TRUE(std::isnan(remainingNoise(run(noisy(0, [](int, int) { return 0.0f; })))));
+  EXPECT_TRUE(
+      std::isnan(remainingNoise(relativeErrors(run(noisy(0, [](int, int) { return 0.0f; }))))));
 }
 
 // A rare bright path in one half of the samples makes no bright spot; where such paths are
@@ -301,7 +302,7 @@ TEST(Denoise, LostFirefliesLeaveTheErrorOfCleanPixels) {
   double before = 0;
   for (size_t i = 0; i < color.half.texels.size(); i += 3)
     before += color.half.texels[i] * color.half.texels[i] / (kWidth * kHeight);
-  EXPECT_LT(remainingNoise(denoised), std::sqrt(before));
+  EXPECT_LT(remainingNoise(relativeErrors(denoised)), std::sqrt(before));
 }
 
 // Errors of bright pixels do not spread to dark ones, nor relative errors of dark ones to bright
@@ -442,7 +443,7 @@ TEST(SlowDenoise, ReducesTheErrorOfRenders) {
     const double before = imageError(noisy.mean, reference, nullptr, nullptr).relMse;
     const double after = imageError(denoised.color, reference, nullptr, nullptr).relMse;
     EXPECT_LT(after, before / 2.5) << named.name;
-    const double estimate = remainingNoise(denoised);
+    const double estimate = remainingNoise(relativeErrors(denoised));
     EXPECT_GT(estimate, 0.4 * std::sqrt(after)) << named.name;
     EXPECT_LT(estimate, 3 * std::sqrt(after)) << named.name;
   }

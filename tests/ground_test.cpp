@@ -94,9 +94,25 @@ TEST(Ground, PixelsBehindWallsDoNotShowIt) {
   const Camera camera = topCamera(5, 90);
   addQuad(scene, addMaterial(scene, lambert(Rgb(0.5f))), {-9, 1, 9}, {9, 0, 0}, {0, 0, -18});
   addGround(scene, {0, {-20, -20}, {20, 20}}, Rgb(0.5f));
-  const auto pixels = pixelsThatShow(scene.instances.back().node, scene, camera, 16, 16);
-  EXPECT_EQ(pixels.size(), 128u);  // the right half
-  for (const size_t pixel : pixels) EXPECT_GE(pixel % 16, 8u);
+  const auto shown = [&](const Bounds& part) {
+    return pixelsThatShow(scene.instances.back().node, part, scene, camera, 16, 16);
+  };
+  const Bounds all{vec3(-INFINITY), vec3(INFINITY)};
+  EXPECT_EQ(shown(all).size(), 128u);  // the right half
+  for (const size_t pixel : shown(all)) EXPECT_GE(pixel % 16, 8u);
+  // The camera sees 10 m across.
+  const std::vector<size_t> part = shown({{-1, 7, -1.25f}, {2.5f, 8, 5}});
+  EXPECT_EQ(part.size(), 4u * 10);
+  for (const size_t pixel : part) EXPECT_LT(pixel % 16, 12u);
+}
+
+// In a photograph a white surface is about 1.
+TEST(Ground, ItsReflectanceInAPhotographIsItsLuminance) {
+  const Image plate = colorImage(8, 8, [](int, int) { return Rgb(0.3f); });
+  const std::vector<size_t> pixels = {3, 4, 5};
+  EXPECT_NEAR(reflectanceInPhotograph(plate, pixels, {0.1f, 0.5f}), 0.3f, 1e-6f);
+  EXPECT_EQ(reflectanceInPhotograph(plate, pixels, {0.1f, 0.2f}), 0.2f);
+  EXPECT_EQ(reflectanceInPhotograph(plate, pixels, {0.4f, 0.5f}), 0.4f);
 }
 
 }  // namespace

@@ -294,7 +294,8 @@ TEST(Noise, EdgesOfLampsAreNotRareLight) {
   const Probe dim(gradientProbe({32, 16}, Rgb(0.5f), {0.3, 0.6, 0.3}));
   const PixelErrors errors =
       renderScene(scene, camera, dim, "importance", smallRender(64, 64, 64, 1)).film.errors();
-  const NoiseQuantiles quantiles = noiseQuantiles(errors, squaredStandardErrors(errors));
+  const NoiseQuantiles quantiles =
+      noiseQuantiles(relativeErrors(errors, squaredStandardErrors(errors)));
   // If 5% of the pixels have the whole mean square, p95 / noise = 1 / sqrt(0.05) = 4.5; the bound
   // is twice that.
   EXPECT_LT(quantiles.p95, 9 * estimateNoise(errors).noise);
@@ -368,7 +369,7 @@ TEST(Noise, ToleratesPixelsWithoutAValidSample) {
   EXPECT_TRUE(std::isnan(variance.rgb(0, 0).x));
   EXPECT_NEAR(variance.rgb(1, 0).x, 0.01, 1e-5);
   const NoiseQuantiles quantiles =
-      noiseQuantiles(film.errors(), squaredStandardErrors(film.errors()));
+      noiseQuantiles(relativeErrors(film.errors(), squaredStandardErrors(film.errors())));
   EXPECT_NEAR(quantiles.median, 0.1, 1e-3);
   EXPECT_NEAR(quantiles.p95, 0.1, 1e-3);
 }

@@ -209,6 +209,16 @@ TEST(Reflectance, ReportsDifferentExposures) {
   EXPECT_LE(maxComponent(meanOf(projection.colors(), true)), 1);
 }
 
+// What is clamped keeps its hue, so that the floor takes light of all channels alike.
+TEST(Reflectance, IsClampedAsAWholeColour) {
+  Local local(Rgb(0.7f, 0.6f, 0.35f), std::nullopt);
+  Image plate = local.photograph();
+  for (float& texel : plate.texels) texel *= 2;
+  Projection projection(local.camera, kSize, kSize);
+  local.solve(plate, 1, projection);
+  expectNear(meanOf(projection.colors(), true), Rgb(1, 6 / 7.0f, 0.5f), 0.01f);
+}
+
 // The specular reflection of a glossy floor is subtracted from the plate before solving.
 TEST(SlowReflectance, OfAGlossyFloorExcludesItsHighlights) {
   const Rgb expected(0.3f, 0.2f, 0.1f);

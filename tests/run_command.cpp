@@ -39,7 +39,7 @@ CommandResult commandResult(int status, const std::string& outPath, const std::s
 }
 
 CommandResult runExecutable(const std::vector<std::string>& arguments, const std::string& signalAt,
-                            int signal, const CommandLimits& limits) {
+                            int signal, const CommandLimits& limits, const std::string& againAt) {
   const TemporaryFolder folder;
   const std::string outPath = folder / "out", errorPath = folder / "error";
   std::vector<char*> argv{const_cast<char*>(kCommand)};
@@ -56,12 +56,14 @@ CommandResult runExecutable(const std::vector<std::string>& arguments, const std
   }
   int status = 0;
   bool ended = false;
-  while (!signalAt.empty() && !ended &&
-         fileContents(errorPath).find(signalAt) == std::string::npos) {
-    usleep(10000);
-    ended = waitpid(child, &status, WNOHANG) == child;
+  for (const std::string& text : {signalAt, againAt}) {
+    if (text.empty()) break;
+    while (!ended && fileContents(errorPath).find(text) == std::string::npos) {
+      usleep(10000);
+      ended = waitpid(child, &status, WNOHANG) == child;
+    }
+    if (!ended) kill(child, signal);
   }
-  if (!signalAt.empty() && !ended) kill(child, signal);
   if (!ended) waitpid(child, &status, 0);
   return commandResult(status, outPath, errorPath);
 }

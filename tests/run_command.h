@@ -30,10 +30,10 @@ struct CommandLimits {
 CommandResult commandResult(int status, const std::string& outPath, const std::string& errorPath);
 
 // Starts the executable itself. If `signalAt` is not empty, sends `signal` as soon as standard
-// error contains it.
+// error contains it; and again as soon as that contains `againAt`.
 CommandResult runExecutable(const std::vector<std::string>& arguments,
                             const std::string& signalAt = "", int signal = SIGINT,
-                            const CommandLimits& limits = {});
+                            const CommandLimits& limits = {}, const std::string& againAt = "");
 
 // The same in the command server, which starts faster; the command line that a file states is
 // wrong.

@@ -177,4 +177,9 @@ void addGround(Scene& scene, const Ground& ground, const Rgb& reflectance) {
                       builder.addNode(kGroundNode));
 }
 
+void setGroundReflectance(Scene& scene, const Rgb& reflectance) {
+  for (Material& material : scene.materials)
+    if (material.name == kGroundNode) material.baseColor = vec4(reflectance, 1);
+}
+
 }  // namespace chromeball

@@ -57,4 +57,7 @@ inline constexpr const char* kGroundNode = "[composite] ground";
 // model at its height are in front of it.
 void addGround(Scene& scene, const Ground& ground, const Rgb& reflectance);
 
+// Changes the base colour of an added ground.
+void setGroundReflectance(Scene& scene, const Rgb& reflectance);
+
 }  // namespace chromeball

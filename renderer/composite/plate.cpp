@@ -38,8 +38,8 @@ Image scaledPlate(const Image& image, int width, int height, const std::string& 
   return resampled(image, width, height);
 }
 
-std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
-                                   int width, int height) {
+std::vector<size_t> pixelsThatShow(int ground, const Bounds& part, const Scene& localScene,
+                                   const Camera& camera, int width, int height) {
   const Accel accel(localScene);
   const CameraRays rays(camera, float(width) / float(height));
   std::vector<size_t> pixels;
@@ -49,31 +49,42 @@ std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Ca
       rays.ray((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height), ray.origin,
                ray.direction);
       Hit hit;
-      if (accel.intersect(ray, 0, hit) && localScene.instances[hit.instance].node == ground)
+      if (!accel.intersect(ray, 0, hit) || localScene.instances[hit.instance].node != ground)
+        continue;
+      const vec3 point = ray.origin + hit.distance * ray.direction;
+      if (point.x >= part.min.x && point.x <= part.max.x && point.z >= part.min.z &&
+          point.z <= part.max.z)
         pixels.push_back(size_t(y) * size_t(width) + size_t(x));
     }
   return pixels;
 }
 
+namespace {
+
+std::vector<double> luminancesOf(const Image& plate, const std::vector<size_t>& pixels) {
+  std::vector<double> luminances;
+  for (const size_t i : pixels) luminances.push_back(luminance(glm::dvec3(plate.rgb(i))));
+  return luminances;
+}
+
+}  // namespace
+
+float reflectanceInPhotograph(const Image& plate, const std::vector<size_t>& pixels,
+                              const vec2& range) {
+  return std::clamp(float(quantile(luminancesOf(plate, pixels), 0.5)), range.x, range.y);
+}
+
 PlateScale scaleByPlate(const Image& plate, const std::vector<size_t>& pixels,
                         const Rgb& irradiance, const Rgb& reflectance) {
   constexpr double kLow = 0.16, kHigh = 0.84;  // one standard deviation of a normal distribution
-  PlateScale result{.pixels = pixels.size()};
-  const auto valuesOf = [&](const auto& value) {
-    std::vector<double> values;
-    for (const size_t i : pixels)
-      values.push_back(
-          value(plate.rgb(int(i % size_t(plate.width)), int(i / size_t(plate.width)))));
-    return values;
-  };
+  PlateScale result{.reflectance = reflectance, .pixels = pixels.size()};
   for (int c = 0; c < 3; ++c) {
-    const std::vector<double> radiance =
-        valuesOf([c](const Rgb& pixel) { return double(pixel[c]); });
+    std::vector<double> radiance;
+    for (const size_t i : pixels) radiance.push_back(double(plate.rgb(i)[c]));
     result.scale[c] =
         float(kPiD * quantile(radiance, 0.5) / (double(reflectance[c]) * double(irradiance[c])));
   }
-  const std::vector<double> luminances =
-      valuesOf([](const Rgb& p) { return luminance(glm::dvec3(p)); });
+  const std::vector<double> luminances = luminancesOf(plate, pixels);
   const double spread = quantile(luminances, kHigh) - quantile(luminances, kLow);
   result.scatter = 0.5 * spread / quantile(luminances, 0.5);
   return result;

@@ -8,6 +8,7 @@
 #include "base/message.h"
 #include "image/image.h"
 #include "math/vec.h"
+#include "scene/bounds.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -28,13 +29,20 @@ Image scaledPlate(const Image& image, int width, int height, const std::string& 
 
 struct PlateScale {
   Rgb scale{1};        // factor on the probe's radiance
+  Rgb reflectance{0};  // of the ground, assumed
   double scatter = 0;  // of the ground's luminance: half the span of 68% of its pixels / median
   size_t pixels = 0;   // that show the ground
 };
 
-// The pixels, as indices into the plate, whose middle shows the node `ground` of the local scene.
-std::vector<size_t> pixelsThatShow(int ground, const Scene& localScene, const Camera& camera,
-                                   int width, int height);
+// The pixels, as indices into the plate, whose middle shows the node `ground` of the local scene,
+// at a point that `part` holds, seen from above.
+std::vector<size_t> pixelsThatShow(int ground, const Bounds& part, const Scene& localScene,
+                                   const Camera& camera, int width, int height);
+
+// The reflectance of the ground in a photograph that shows a white surface in the ground's light as
+// 1: the median luminance. Typical exposures come near; `range` bounds it.
+float reflectanceInPhotograph(const Image& plate, const std::vector<size_t>& pixels,
+                              const vec2& range);
 
 // The scale at which a matte ground of this reflectance has the median radiance of the plate: per
 // channel pi L / (reflectance E), with E the irradiance of the ground by the probe with scale 1,

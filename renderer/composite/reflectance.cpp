@@ -161,7 +161,9 @@ ReflectanceSolution solveStep(const Image& plate, const Image& black, const Imag
     for (int c = 0; c < 3; ++c)
       if (received[c] > dark) rho[c] = wanted[c] / received[c];
     solution.clamped += maxComponent(rho) > 1;
-    rho = glm::clamp(rho, 0.0f, 1.0f);
+    // As a whole: the hue of a shadow is that of the light it blocks, and per channel the clamped
+    // ones would darken less than the others.
+    rho = glm::max(rho, 0.0f) / std::max(maxComponent(rho), 1.0f);
     solution.lastChange +=
         luminance(glm::abs(rho - projection.colors().rgb(x, y))) / double(solution.pixels);
     projection.colors().setRgb(x, y, rho);

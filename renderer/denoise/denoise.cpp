@@ -221,21 +221,26 @@ double denoiseBytes(int width, int height, int parts) {
   return planes * sizeof(float) * (width + 2.0 * Plane::kMargin) * (height + 2.0 * Plane::kMargin);
 }
 
-double remainingNoise(const Denoised& denoised) {
+Image relativeErrors(const Denoised& denoised) {
   const Image& color = denoised.whole.empty() ? denoised.color : denoised.whole;
-  const Image& error = denoised.error;
-  double mean = 0, sum = 0;
-  const double count = double(error.texels.size());
-  for (size_t i = 0; i < color.pixels(); ++i) mean += double(luminance(color.rgb(i))) / count;
-  if (!(mean > 0)) return std::numeric_limits<double>::quiet_NaN();
+  Image relative = denoised.error;
+  double mean = 0;
+  for (size_t i = 0; i < color.pixels(); ++i)
+    mean += double(luminance(color.rgb(i))) / double(color.pixels());
   for (size_t i = 0; i < color.pixels(); ++i) {
     // As far as is known here, a pixel is as bright as its error if that exceeds its luminance.
-    const double absolute = double(error.texels[i]);
-    const double reference = std::max({double(luminance(color.rgb(i))), absolute, 0.01 * mean});
-    const double relative = absolute / reference;
-    sum += relative * relative / count;
+    float& error = relative.texels[i];
+    const double reference =
+        std::max({double(luminance(color.rgb(i))), double(error), 0.01 * mean});
+    error = float(mean > 0 ? double(error) / reference : std::numeric_limits<double>::quiet_NaN());
   }
-  return std::sqrt(sum);
+  return relative;
+}
+
+double remainingNoise(const Image& relativeErrors) {
+  double sum = 0;
+  for (const float error : relativeErrors.texels) sum += double(error) * double(error);
+  return std::sqrt(sum / double(relativeErrors.texels.size()));
 }
 
 }  // namespace chromeball

@@ -40,9 +40,9 @@ struct Denoised {
 // The sum of the parts; negative radiance is set to 0.
 Denoised sumOf(const std::vector<DenoisedPart>& parts);
 
-// The root mean square of the pixels' estimated relative errors, as Noise::noise; NaN for a
-// black image.
-double remainingNoise(const Denoised& denoised);
+// The estimated relative errors, as relativeErrors() of film/noise.h; NaN for a black image.
+Image relativeErrors(const Denoised& denoised);
+double remainingNoise(const Image& relativeErrors);  // their root mean square, as Noise::noise
 
 // Peak memory of denoise().
 double denoiseBytes(int width, int height, int parts);

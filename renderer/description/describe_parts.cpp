@@ -95,9 +95,10 @@ PartJson partOf(const SurroundingsEntry& around) {
 }
 
 PartJson partOf(const CompositeEntry& entry) {
-  PartJson part = {{"ground", numbersIn(entry.groundReflectance)},
-                   {"range", numbersIn(entry.groundReflectanceRange)},
-                   {"nodes", PartJson::array()}};
+  PartJson part = {
+      {"ground", entry.groundReflectance ? numbersIn(*entry.groundReflectance) : "auto"},
+      {"range", numbersIn(entry.groundReflectanceRange)},
+      {"nodes", PartJson::array()}};
   for (const std::string& node : entry.localScene) part["nodes"].push_back(node);
   return part;
 }

@@ -71,6 +71,7 @@ struct CompositeDescription {
   CompositeEntry entry;
   std::optional<std::string> plateFile;  // nullopt: a shadow catcher
   Image plate;                           // of the image's size
+  bool isPhotograph = false;             // the plate's file holds integers: its white is 1
   CompositeMode mode = CompositeMode::Difference;
   // The source of the local scene's reflectance.
   enum class Reflectance { Model, Plate, Flat } reflectance = Reflectance::Model;
@@ -103,7 +104,7 @@ struct OutputDescription {
   std::vector<std::string> files;
   bool makesFolders = false;        // the scene file names the outputs
   std::vector<std::string> layers;  // as they were asked for
-  std::optional<std::string> stats;
+  std::optional<std::string> stats, noiseMap;
   DevelopSettings develop;       // of a .png, before `display`
   DisplayTransform display;      // of a .png
   bool choosesExposure = false;  // the display's is not known: meteredExposure()

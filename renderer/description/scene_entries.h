@@ -68,7 +68,7 @@ struct Optics {
 // The local scene of [composite], by node names; all other nodes are objects.
 struct CompositeEntry {
   std::vector<std::string> localScene;
-  Rgb groundReflectance{0.25f};
+  std::optional<Rgb> groundReflectance;  // nullopt: typical, or by the plate (composite/plate.h)
   vec2 groundReflectanceRange{0.1f, 0.5f};
 };
 

@@ -197,18 +197,25 @@ Noise estimateNoise(const PixelErrors& errors) {
   return {std::sqrt(average), std::sqrt(average + 1.96 * std::sqrt(variance / count))};
 }
 
-NoiseQuantiles noiseQuantiles(const PixelErrors& errors,
-                              const std::vector<glm::dvec4>& squaredErrors) {
+Image relativeErrors(const PixelErrors& errors, const std::vector<glm::dvec4>& squaredErrors) {
   const double floor = 0.01 * meanOf(errors.luminances);
-  std::vector<double> relative;
-  for (size_t i = 0; i < squaredErrors.size(); ++i)
-    if (!std::isnan(squaredErrors[i].w))
-      relative.push_back(std::sqrt(squaredErrors[i].w) / std::max(errors.luminances[i], floor));
-  if (relative.empty() || !(floor > 0)) return {kNan, kNan};
+  Image relative(errors.width, errors.height, 1);
+  for (size_t i = 0; i < squaredErrors.size(); ++i) {
+    const double error = std::sqrt(squaredErrors[i].w);
+    const double reference = std::max({errors.luminances[i], error, floor});
+    relative.texels[i] = float(floor > 0 && !std::isnan(error) ? error / reference : kNan);
+  }
+  return relative;
+}
+
+NoiseQuantiles noiseQuantiles(const Image& relativeErrors) {
+  std::vector<float> known = relativeErrors.texels;
+  std::erase_if(known, [](float error) { return std::isnan(error); });
+  if (known.empty()) return {kNan, kNan};
   const auto quantile = [&](double fraction) {
-    const auto at = relative.begin() + std::ptrdiff_t(fraction * double(relative.size() - 1));
-    std::nth_element(relative.begin(), at, relative.end());
-    return *at;
+    const auto at = known.begin() + std::ptrdiff_t(fraction * double(known.size() - 1));
+    std::nth_element(known.begin(), at, known.end());
+    return double(*at);
   };
   return {quantile(0.5), quantile(0.95)};
 }

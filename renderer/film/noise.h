@@ -50,11 +50,15 @@ struct Noise {
 };
 Noise estimateNoise(const PixelErrors& errors);
 
+// The relative standard errors as an image of one channel, with s from `squaredErrors`; at most 1,
+// since few samples may leave a pixel darker than its error. NaN for pixels without an estimate,
+// and for all of a black image.
+Image relativeErrors(const PixelErrors& errors, const std::vector<glm::dvec4>& squaredErrors);
+
 struct NoiseQuantiles {
-  double median, p95;  // over the pixels
+  double median, p95;  // over the pixels that are not NaN; NaN if all are
 };
-NoiseQuantiles noiseQuantiles(const PixelErrors& errors,
-                              const std::vector<glm::dvec4>& squaredErrors);
+NoiseQuantiles noiseQuantiles(const Image& relativeErrors);
 
 // How many samples each pixel takes: more where the image is noisier (adaptive sampling).
 

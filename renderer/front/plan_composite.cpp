@@ -42,7 +42,10 @@ void planPlate(const Settings& s, RenderDescription& description) {
   CompositeDescription& composite = *description.composite;
   composite.mode = s.choice<CompositeMode>("composite.mode");
   composite.plateFile = s.get<std::string>("composite.plate");
-  const Image plate = readPlate(*composite.plateFile, &composite.messages, &composite.messages);
+  Messages decoding;
+  const Image plate = readPlate(*composite.plateFile, &composite.messages, &decoding);
+  composite.isPhotograph = !decoding.empty();
+  composite.messages.insert(composite.messages.end(), decoding.begin(), decoding.end());
   std::optional<ImageSize>& size = description.size;
   if (!size) size = ImageSize{plate.width, plate.height};
   composite.plate = scaledPlate(plate, size->width, size->height, *composite.plateFile);

@@ -178,7 +178,8 @@ DevelopSettings plannedDevelop(const Settings& s) {
 OutputDescription plannedOutput(const Settings& s) {
   OutputDescription output{.files = s.get<std::vector<std::string>>("output.file"),
                            .layers = s.get<std::vector<std::string>>("output.aovs"),
-                           .stats = s.getIfGiven<std::string>("stats")};
+                           .stats = s.getIfGiven<std::string>("stats"),
+                           .noiseMap = s.getIfGiven<std::string>("noise-map")};
   const PlannedDisplay display = planDisplay(s);
   output.display = display.transform, output.choosesExposure = display.choosesExposure;
   output.develop = plannedDevelop(s);

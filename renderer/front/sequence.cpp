@@ -46,7 +46,7 @@ void nameFiles(Settings& settings, int number) {
     for (std::string& path : *paths) path = named("output.file", path);
     settings.set("output.file", *paths, settings.location("output.file"));
   }
-  for (const char* name : {"stats", "checkpoint"})
+  for (const char* name : {"stats", "noise-map", "checkpoint"})
     if (const auto path = settings.getIfGiven<std::string>(name))
       settings.set(name, named(name, *path), settings.location(name));
   if (const auto path = settings.getIfGiven<std::string>("cache"))  // frames may share one

@@ -97,6 +97,12 @@ std::vector<Setting> commandRows() {
            .type = Name,
            .absent = "none",
            .help = "Writes times, rays, noise and the job's settings to this file."},
+          {.option = "noise-map",
+           .argument = "FILE.png",
+           .type = Name,
+           .absent = "none",
+           .help = "Writes a small picture of each pixel's relative error, after denoising: from "
+                   "black, 0.1% or less, over violet, 1%, and orange, 10%, to pale yellow, 100%."},
           {.option = "frames",
            .argument = "A:B[:STEP]",
            .type = Name,

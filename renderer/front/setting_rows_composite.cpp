@@ -30,9 +30,11 @@ std::vector<Setting> compositeRows() {
        .type = Compound,
        .form = "a number (grey), or three",
        .range = {.min = 0.001, .max = 1},
-       .absent = "0.25",
-       .help = "The ground's base colour where `reflectance` does not find it, and on average for "
-               "`[probe] scale = \"plate\"`."},
+       .absent =
+           "0.25; with `[probe] scale = \"plate\"` the plate's luminance around the objects if "
+           "its file holds integers, within `ground_reflectance_range`",
+       .help = "The ground's base colour where `reflectance` does not find it, and around the "
+               "objects for `[probe] scale = \"plate\"`."},
       {.key = "ground_reflectance_range",
        .type = Compound,
        .form = "two numbers, [least, most]",

@@ -6,6 +6,16 @@
 #include "base/progress.h"
 
 namespace chromeball {
+namespace {
+
+NoiseFigures remaining(const Image& relative, const NoiseFigures& before) {
+  const NoiseQuantiles quantiles = noiseQuantiles(relative);
+  const auto limited = [](double after, double was) { return was < after ? was : after; };
+  return {limited(remainingNoise(relative), before.noise), limited(quantiles.median, before.median),
+          limited(quantiles.p95, before.p95)};
+}
+
+}  // namespace
 
 std::vector<HalvedImage> directAndIndirect(const HalvedImage& color, const HalvedImage& direct) {
   return {direct, color - direct};
@@ -22,8 +32,10 @@ std::optional<Denoised> denoiseRender(const RenderResult& result, const Progress
   return sumOf(*parts);
 }
 
-double addDenoised(Denoised denoised, double noise, OutputImage& image) {
-  const double remaining = remainingNoise(denoised);
+DenoiseReport addDenoised(Denoised denoised, const NoiseFigures& before, OutputImage& image) {
+  DenoiseReport report;
+  report.relative = relativeErrors(denoised);
+  static_cast<NoiseFigures&>(report) = remaining(report.relative, before);
   Image& color = image.layers.front().image;
   Image noisy(color.width, color.height, 3);
   for (int y = 0; y < color.height; ++y)
@@ -33,17 +45,27 @@ double addDenoised(Denoised denoised, double noise, OutputImage& image) {
     }
   image.layers.push_back({"noisy", "RGB", std::move(noisy)});
   image.layers.push_back({"denoise_error", "Y", std::move(denoised.error)});
-  return noise < remaining ? noise : remaining;
+  return report;
 }
 
-std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, double noise,
+std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, const NoiseFigures& before,
                                          const Progress& progress, OutputImage& image) {
   Stopwatch watch;
   std::optional<Denoised> found =
       denoise([&](double fraction) { progress(kRenderShare + (1 - kRenderShare) * fraction); });
   if (!found) return std::nullopt;
-  const double remaining = addDenoised(*std::move(found), noise, image);
-  return DenoiseReport{remaining, watch.lap()};
+  DenoiseReport report = addDenoised(*std::move(found), before, image);
+  report.seconds = watch.lap();
+  return report;
+}
+
+ImageNoise::ImageNoise(const PixelErrors& errors) {
+  const std::vector<glm::dvec4> squared = squaredStandardErrors(errors);
+  variance = varianceImage(squared, errors.width, errors.height);
+  relative = relativeErrors(errors, squared);
+  const NoiseQuantiles quantiles = noiseQuantiles(relative);
+  noise = estimateNoise(errors).noise;
+  median = quantiles.median, p95 = quantiles.p95;
 }
 
 }  // namespace chromeball

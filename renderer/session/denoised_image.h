@@ -12,9 +12,13 @@
 
 namespace chromeball {
 
-// The error that a denoised image has left.
-struct DenoiseReport {
-  double noise = 0;  // as Noise::noise, estimated
+// The noise of an image, and what a denoised one has left of it: fractions, NaN if unknown.
+struct NoiseFigures {
+  double noise, median, p95;  // as Noise and NoiseQuantiles (film/noise.h)
+};
+
+struct DenoiseReport : NoiseFigures {
+  Image relative;  // estimated relative error of each pixel
   double seconds = 0;
 };
 
@@ -30,28 +34,20 @@ inline constexpr double kRenderShare = 0.9;
 
 // Replaces the color of `image` by the denoised one (alpha only if it is denoised too), and adds
 // the layers `noisy` and `denoise_error`. `progress` receives fractions from kRenderShare to 1.
-// `noise`: the noise before denoising, which the remaining noise does not exceed; NaN: unknown.
-// nullopt if `denoise` returns nullopt.
+// `before`: the noise before denoising, which no figure of the remaining noise exceeds. nullopt if
+// `denoise` returns nullopt.
 using Denoiser = std::function<std::optional<Denoised>(const Progress& progress)>;
-std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, double noise,
+std::optional<DenoiseReport> addDenoised(const Denoiser& denoise, const NoiseFigures& before,
                                          const Progress& progress, OutputImage& image);
 
-// The same with an image that is already denoised. Returns the remaining noise.
-double addDenoised(Denoised denoised, double noise, OutputImage& image);
+// The same with an image that is already denoised.
+DenoiseReport addDenoised(Denoised denoised, const NoiseFigures& before, OutputImage& image);
 
-// The noise of an image.
+struct ImageNoise : NoiseFigures {
+  Image variance;  // of each pixel's mean, RGB
+  Image relative;  // relative error of each pixel (film/noise.h)
 
-struct ImageNoise {
-  double noise, median, p95;  // fractions (film/noise.h)
-  Image variance;             // of each pixel's mean, RGB
-
-  explicit ImageNoise(const PixelErrors& errors) {
-    const std::vector<glm::dvec4> squared = squaredStandardErrors(errors);
-    const NoiseQuantiles quantiles = noiseQuantiles(errors, squared);
-    noise = estimateNoise(errors).noise;
-    median = quantiles.median, p95 = quantiles.p95;
-    variance = varianceImage(squared, errors.width, errors.height);
-  }
+  explicit ImageNoise(const PixelErrors& errors);
 };
 
 }  // namespace chromeball

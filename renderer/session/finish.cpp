@@ -116,6 +116,11 @@ std::optional<Placement> placementOf(const RenderSettings& s) {
   return Placement{s.crop->x, s.crop->y, s.width, s.height};
 }
 
+// An interrupted render may have too few samples.
+bool canBeDenoised(const FinishPlan& plan, const RenderResult& result) {
+  return plan.settings.denoisesAtEnd() && result.samples >= 2;
+}
+
 // The composite by the difference formula, with its errors.
 struct Difference {
   Image mean;
@@ -149,12 +154,12 @@ FinishedImage finishComposite(const FinishPlan& plan, const RenderResult& result
   finished.image.placement = placementOf(plan.settings);
   finished.image.layers =
       compositeLayers(composite, composed.color, result, finished.noise.variance);
-  if (plan.settings.denoisesAtEnd() && !result.interrupted)
+  if (canBeDenoised(plan, result))
     finished.denoised = addDenoised(
         [&](const Progress& part) {
           return denoiseComposite(result, composite.plate, composite.mode, part, stop);
         },
-        finished.noise.noise, progress, finished.image);
+        finished.noise, progress, finished.image);
   return finished;
 }
 
@@ -243,10 +248,12 @@ FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const P
   FinishedImage finished{{}, ImageNoise(result.film.errors()), {}, {}};
   finished.image = assemble(result, plan, finished.noise.variance);
   finished.image.placement = placementOf(plan.settings);
-  if (plan.settings.denoisesAtEnd() && !result.interrupted)
+  if (canBeDenoised(plan, result))
     finished.denoised =
         addDenoised([&](const Progress& part) { return denoiseRender(result, part, stop); },
-                    finished.noise.noise, progress, finished.image);
+                    finished.noise, progress, finished.image);
+  if (canBeDenoised(plan, result) && !finished.denoised && !plan.settings.wantsAov(Aov::Denoise))
+    addFeatures(result, finished.image);  // so that it can be denoised later
   return finished;
 }
 

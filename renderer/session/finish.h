@@ -59,8 +59,9 @@ struct FinishedImage {
   std::optional<DenoiseReport> denoised;
 };
 
-// Denoises a whole image if the plan says so; not if `stop` is set meanwhile. `progress` receives
-// fractions from kRenderShare to 1 then.
+// Denoises a whole image if the plan says so, also an interrupted render. If `stop` is set, it gets
+// the layers that can be denoised later instead. `progress` receives fractions from kRenderShare to
+// 1 then.
 FinishedImage finish(const FinishPlan& plan, const RenderResult& result, const Progress& progress,
                      const std::atomic<bool>& stop);
 // The same without denoising, and without the estimates from many pixels: the noise and the layer

@@ -120,12 +120,13 @@ void addProbe(const std::string& path, const LoadedProbe& probe, Messages& messa
 }
 
 void addPlateScale(const CompositeEntry& composite, const PlateScale& found, Messages& messages) {
-  const Rgb &scale = found.scale, &assumed = composite.groundReflectance;
-  const double grey = luminance(glm::dvec3(assumed));
+  const Rgb& scale = found.scale;
+  const double grey = luminance(glm::dvec3(found.reflectance));
   const vec2& range = composite.groundReflectanceRange;
   addNote(messages,
-          "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground with reflectance "
-          "{:.3g}; they scatter by {:.2g}%; reflectances of {:.3g} to {:.3g} make it {:.3g} to "
+          "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground around the "
+          "objects with reflectance {:.3g}; they scatter by {:.2g}%; reflectances of {:.3g} to "
+          "{:.3g} make it {:.3g} to "
           "{:.3g} times that",
           scale.x, scale.y, scale.z, found.pixels, grey, 100 * found.scatter, range.x, range.y,
           grey / double(range.y), grey / double(range.x));
@@ -163,6 +164,9 @@ Messages loadMessages(const LoadedScene& loaded) {
                "the local scene is unlit (KHR_materials_unlit): it shows neither shadows nor light "
                "of the objects; give it a material that is lit");
   warn(idleSettings(description, contentsOf(loaded)));
+  if (description.settings.denoise && description.settings.isPart())
+    addNote(messages, "{}: a part is denoised when all are merged",
+            namedOrigin(description, "render.denoise"));
   addMemory(loaded, messages);
   if (const auto& probe = description.probe.file)
     addProbe(*probe, loaded.loadedProbe, messages);

@@ -17,16 +17,17 @@ namespace {
 
 FinishedRender renderPlain(const LoadedScene& loaded, const PreparedScene& prepared,
                            const RenderSettings& settings, const Progress& progress,
-                           const std::atomic<bool>& stop, RenderControl* control) {
+                           const Stop& stop, RenderControl* control) {
   const RenderDescription& description = loaded.description;
   const double share = description.settings.denoisesAtEnd() ? kRenderShare : 1;
   std::optional<CacheFile> records;
   if (description.settings.cacheError) records.emplace(loaded);
-  RenderResult result = render(*prepared.world, loaded.camera, *prepared.lighting, settings,
-                               [&](double fraction) { progress(share * fraction); }, stop, control,
-                               {prepared.environment.get(), records ? &records->cache() : nullptr});
+  RenderResult result =
+      render(*prepared.world, loaded.camera, *prepared.lighting, settings,
+             [&](double fraction) { progress(share * fraction); }, stop.rendering, control,
+             {prepared.environment.get(), records ? &records->cache() : nullptr});
   if (records) records->write();
-  FinishedImage finished = finish(finishPlan(loaded, result), result, progress, stop);
+  FinishedImage finished = finish(finishPlan(loaded, result), result, progress, stop.denoising);
   return {std::move(finished), std::move(result)};
 }
 
@@ -92,8 +93,7 @@ PreparedScene prepareScene(const LoadedScene& loaded, const PreparedScene* earli
 }
 
 FinishedRender renderLoaded(const LoadedScene& loaded, const PreparedScene& prepared,
-                            const Progress& progress, const std::atomic<bool>& stop,
-                            RenderControl* control) {
+                            const Progress& progress, const Stop& stop, RenderControl* control) {
   const RenderDescription& description = loaded.description;
   Stopwatch watch;
   const KeptTime kept = keepTime(description);

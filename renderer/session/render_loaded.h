@@ -38,11 +38,20 @@ struct FinishedRender : FinishedImage {
   const Image& color() const { return image.layers.front().image; }  // linear RGB or RGBA
 };
 
-// Renders until the description's limit of samples, time or noise is reached, or `stop` is set. In
+// When to end early: rendering, and then denoising what there is.
+struct Stop {
+  const std::atomic<bool>&rendering, &denoising;
+
+  Stop(const std::atomic<bool>& both) : rendering(both), denoising(both) {}
+  Stop(const std::atomic<bool>& render, const std::atomic<bool>& denoise)
+      : rendering(render), denoising(denoise) {}
+};
+
+// Renders until the description's limit of samples, time or noise is reached, or `stop` says so. In
 // the latter case render.interrupted is true, and the image contains the samples so far. `control`
 // (render/render_state.h) may be null; not for composites of two passes.
 FinishedRender renderLoaded(const LoadedScene& loaded, const PreparedScene& prepared,
-                            const Progress& progress, const std::atomic<bool>& stop,
+                            const Progress& progress, const Stop& stop,
                             RenderControl* control = nullptr);
 
 // The same without progress reports and interruption.

@@ -145,13 +145,21 @@ json statistics(const LoadedScene& loaded, const FinishedRender& result,
   j.update(describe(result.render));
   j["depth_cut"] = describe(result.render.depthCut, description.settings);
   if (const auto& d = result.denoised)
-    j["denoised"] = {{"noise", d->noise}, {"seconds", d->seconds}};
+    j["denoised"] = {
+        {"noise", d->noise}, {"median", d->median}, {"p95", d->p95}, {"seconds", d->seconds}};
   if (result.composite) j.update(describe(*result.composite));
   if (const auto& found = loaded.plateScale)
     j["probe_scale"] = {{"scale", {found->scale.x, found->scale.y, found->scale.z}},
                         {"scatter", found->scatter},
                         {"pixels", found->pixels}};
   return j;
+}
+
+void addNoise(const DenoiseReport& denoised, Metadata& metadata) {
+  if (!std::isfinite(denoised.noise)) return;
+  metadata["denoised_noise"] = float(denoised.noise);
+  metadata["denoised_noise_median"] = float(denoised.median);
+  metadata["denoised_noise_p95"] = float(denoised.p95);
 }
 
 Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render) {
@@ -162,8 +170,7 @@ Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& rende
   metadata["noise"] = float(finished.noise.noise);
   metadata["noise_median"] = float(finished.noise.median);
   metadata["noise_p95"] = float(finished.noise.p95);
-  if (finished.denoised && std::isfinite(finished.denoised->noise))
-    metadata["denoised_noise"] = float(finished.denoised->noise);
+  if (finished.denoised) addNoise(*finished.denoised, metadata);
   if (render.clamped.kept + render.clamped.removed > 0)  // else nothing was to be clamped
     metadata["clamp_light_removed"] = float(render.clamped.fractionRemoved());
   return metadata;
@@ -177,6 +184,8 @@ Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
   metadata["command"] = commandLine();
   metadata["seconds"] = float(seconds);
   metadata.merge(sampleMetadata(finished, render));
+  if (render.interrupted) metadata["interrupted"] = "true";
+  if (description.settings.denoisesAtEnd() && !finished.denoised) metadata["denoise"] = "false";
   if (!description.quality.empty()) metadata["quality"] = description.quality;
   if (!description.output.choosesExposure)
     metadata["exposure"] = description.output.display.exposure;
@@ -198,6 +207,7 @@ Messages checkOutputs(const RenderDescription& description) {
   for (const std::string& output : files)
     description.output.makesFolders ? checkSceneOutput(output) : checkWritable(output);
   if (description.output.stats) checkOutputFile(*description.output.stats, {".json"});
+  if (description.output.noiseMap) checkOutputFile(*description.output.noiseMap, {".png"});
   if (description.run.checkpoint) checkOutputFile(*description.run.checkpoint, {".exr"});
 
   const auto has = [&](std::string_view extension) {
@@ -239,8 +249,8 @@ void prepareOutputs(const RenderDescription& description, std::vector<std::strin
   for (const std::string& file : description.output.files) outputs.push_back(partialName(file));
   if (const auto& checkpoint = description.run.checkpoint)
     outputs.push_back(FileLock::nameOf(*checkpoint).string());
-  for (const auto* file :
-       {&description.output.stats, &description.run.checkpoint, &description.run.cache})
+  for (const auto* file : {&description.output.stats, &description.output.noiseMap,
+                           &description.run.checkpoint, &description.run.cache})
     if (*file) outputs.push_back(**file);
   checkDistinct(outputs, inputs);
   if (description.output.makesFolders)

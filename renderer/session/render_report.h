@@ -31,6 +31,9 @@ Metadata imageMetadata(const LoadedScene& loaded, const FinishedImage& finished,
 // The attributes that depend on the samples.
 Metadata sampleMetadata(const FinishedImage& finished, const RenderResult& render);
 
+// Adds the noise of a denoised image to the attributes.
+void addNoise(const DenoiseReport& denoised, Metadata& metadata);
+
 // The output files of a description: images and statistics.
 
 // Checks, before rendering, that the outputs can be written. Returns warnings about settings that

@@ -49,21 +49,35 @@ std::string scaledText(const glm::dvec3& scale) {
   return fmt::format("{:.2g},{:.2g},{:.2g}", scale.x, scale.y, scale.z);
 }
 
-Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale) {
+std::string cureOfDimLight(const CompositeReport::Reflectance& r, bool isScaledByPlate) {
+  if (isScaledByPlate)
+    return "a smaller `ground_reflectance` in [composite] makes the light brighter, and mode = "
+           "\"ratio\" darkens the plate itself";
+  if (r.exposureRatio > 1)
+    return fmt::format(
+        "plate and probe may differ in exposure: the light fits the plate at {:.3g} "
+        "times its brightness",
+        r.exposureRatio);
+  return "lamps that the probe does not have may light them; mode = \"ratio\" darkens the plate "
+         "itself";
+}
+
+Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale, bool isScaledByPlate) {
   constexpr double kMinClamped = 0.01;
   Messages messages;
-  if (const auto& r = report.reflectance; r && r->clampedFraction > kMinClamped)
-    messages.push_back(
-        {Message::Kind::Warning,
-         fmt::format("{:.1f}% of the local scene's pixels need an albedo above 1 and were clamped: "
-                     "the plate is {:.3g} times as bright as the model's own reflectance makes it; "
-                     "plate and probe may differ in exposure",
-                     100 * r->clampedFraction, r->exposureRatio),
-         Remedy{"probe.scale", scaledText(r->exposureRatio * scale)}});
+  if (const auto& r = report.reflectance; r && r->clampedFraction > kMinClamped) {
+    addWarning(messages,
+               "shadows are too faint on {:.1f}% of the local scene's pixels, which are brighter "
+               "than white in this light (albedo above 1, clamped): {}",
+               100 * r->clampedFraction, cureOfDimLight(*r, isScaledByPlate));
+    if (!isScaledByPlate && r->exposureRatio > 1)
+      messages.back().remedy = Remedy{"probe.scale", scaledText(r->exposureRatio * scale)};
+  }
   if (report.darkerThanBlack)
     addWarning(messages,
-               "{} pixels would be negative, since the objects take more light than the plate "
-               "has there, and are black: plate and probe may differ in exposure",
+               "{} pixels are black, since the objects take more light there than the plate has: "
+               "the light is too bright for the plate, or falls on things that the local scene "
+               "lacks; mode = \"ratio\" darkens the plate by a factor instead",
                report.darkerThanBlack);
   return messages;
 }
@@ -72,7 +86,7 @@ Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale) {
 
 FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
                                const RenderSettings& settings, const Progress& progress,
-                               const std::atomic<bool>& stop, RenderControl* control) {
+                               const Stop& stop, RenderControl* control) {
   const RenderDescription& description = loaded.description;
   const CompositeDescription& plan = *description.composite;
   const bool solves = loaded.projection != nullptr;
@@ -80,17 +94,18 @@ FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& p
   std::optional<CompositeReport::Reflectance> reflectance;
   if (solves)
     reflectance = solveReflectance(
-        loaded, prepared, [&](double fraction) { progress(share * fraction / 2); }, stop);
+        loaded, prepared, [&](double fraction) { progress(share * fraction / 2); }, stop.rendering);
   const bool needsBehind = std::ranges::count(plan.layers, "l_noobj") > 0;
   CompositeRender rendered = renderComposite(
       *prepared.world, loaded.camera, *prepared.lighting, plan.plate, settings, plan.passes,
       needsBehind,
-      [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); }, stop,
-      control);
+      [&](double fraction) { progress(share * (solves ? (1 + fraction) / 2 : fraction)); },
+      stop.rendering, control);
   FinishedImage finished =
-      finishComposite(finishPlan(loaded, rendered.result), rendered, progress, stop);
+      finishComposite(finishPlan(loaded, rendered.result), rendered, progress, stop.denoising);
   finished.composite->reflectance = reflectance;
-  Messages messages = warningsOf(*finished.composite, description.probe.scale);
+  Messages messages =
+      warningsOf(*finished.composite, description.probe.scale, loaded.plateScale.has_value());
   const auto& limit = description.settings.noiseLimit;
   if (limit && plan.passes == Passes::Two && !rendered.result.interrupted &&
       finished.noise.noise > *limit)
@@ -99,8 +114,6 @@ FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& p
                "which holds for its first pass: it is relative to plate and "
                "light of the scene together; give a smaller --noise",
                100 * finished.noise.noise, 100 * *limit);
-  if (loaded.plateScale)  // nothing better is known
-    for (Message& message : messages) message.remedy.reset();
   return {std::move(finished), std::move(rendered.result), std::move(messages)};
 }
 
@@ -142,6 +155,8 @@ Ground clipped(Ground ground, const Surroundings& around, const std::string& loc
   return ground;
 }
 
+constexpr Rgb kTypicalGround(0.25f);
+
 void placeGround(const RenderDescription& description, LoadedScene& loaded) {
   const CompositeDescription& composite = *description.composite;
   const std::string location = description.origins.of(
@@ -161,7 +176,7 @@ void placeGround(const RenderDescription& description, LoadedScene& loaded) {
     addWarning(loaded.messages,
                "{}: the model reaches {:.3g} m below the ground; move it, or give `ground_height`",
                location, depth);
-  addGround(loaded.scene, ground, composite.entry.groundReflectance);
+  addGround(loaded.scene, ground, composite.entry.groundReflectance.value_or(kTypicalGround));
 }
 
 }  // namespace
@@ -213,6 +228,42 @@ void prepareLocalScene(LoadedScene& loaded) {
                float(composite.roughness.value_or(0.2)));
 }
 
+namespace {
+
+Rgb groundReflectance(const CompositeDescription& composite, const std::vector<size_t>& pixels) {
+  const CompositeEntry& entry = composite.entry;
+  if (entry.groundReflectance) return *entry.groundReflectance;
+  if (!composite.isPhotograph) return kTypicalGround;
+  return Rgb(reflectanceInPhotograph(composite.plate, pixels, entry.groundReflectanceRange));
+}
+
+// The pixels that show the ground around the objects, no farther from their box than its diagonal:
+// there their shadows fall, while the rest of the plane is often not the ground in the photograph.
+// All that show the plane if these are few.
+std::vector<size_t> pixelsOfGround(const LoadedScene& loaded) {
+  constexpr size_t kFew = 64;
+  Scene local = loaded.scene;
+  local.instances.clear();
+  Bounds objects;
+  for (size_t i = 0; i < loaded.isObject.size(); ++i) {
+    const Instance& instance = loaded.scene.instances[i];
+    if (loaded.isObject[i])
+      objects.add(bounds(loaded.scene, instance));
+    else
+      local.instances.push_back(instance);
+  }
+  const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
+  const auto within = [&](const Bounds& part) {
+    return pixelsThatShow(int(ground - local.nodeNames.begin()), part, local, loaded.camera,
+                          loaded.description.settings.width, loaded.description.settings.height);
+  };
+  const float reach = float(glm::length(objects.size()));
+  const std::vector<size_t> around = within({objects.min - reach, objects.max + reach});
+  return around.size() >= kFew ? around : within({vec3(-INFINITY), vec3(INFINITY)});
+}
+
+}  // namespace
+
 void scaleProbeByPlate(LoadedScene& loaded) {
   const RenderDescription& description = loaded.description;
   if (!description.probe.isScaledByPlate) return;
@@ -222,26 +273,20 @@ void scaleProbeByPlate(LoadedScene& loaded) {
         "{}: scale = \"plate\" needs the probe as the only light; the model has lights of its "
         "own: leave them out with `lights = \"off\"` in [lighting]",
         location);
-  Scene local = loaded.scene;
-  local.instances.clear();
-  for (size_t i = 0; i < loaded.isObject.size(); ++i)
-    if (!loaded.isObject[i]) local.instances.push_back(loaded.scene.instances[i]);
-  const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
-  const std::vector<size_t> pixels =
-      pixelsThatShow(int(ground - local.nodeNames.begin()), local, loaded.camera,
-                     description.settings.width, description.settings.height);
+  const std::vector<size_t> pixels = pixelsOfGround(loaded);
   const Rgb irradiance = irradianceOn(loaded.probe, vec3(0, 1, 0));
-  const CompositeEntry& entry = description.composite->entry;
+  const CompositeDescription& composite = *description.composite;
   const auto isPositive = [](const Rgb& c) { return c.x > 0 && c.y > 0 && c.z > 0; };
   if (pixels.empty()) throwInput("{}: no pixel shows the ground", location);
   if (!isPositive(irradiance))
     throwInput("{}: the probe gives the ground no light in one channel or all", location);
   PlateScale scale =
-      scaleByPlate(description.composite->plate, pixels, irradiance, entry.groundReflectance);
+      scaleByPlate(composite.plate, pixels, irradiance, groundReflectance(composite, pixels));
   if (!isPositive(scale.scale) || !isFinite(scale.scale))
     throwInput("{}: the plate is black where it shows the ground, in one channel or all", location);
   loaded.probe = scaled(loaded.probe, scale.scale);
   loaded.sources = sourcesOf(description, loaded.loadedProbe, loaded.probe);
+  setGroundReflectance(loaded.scene, scale.reflectance);
   loaded.plateScale = scale;
 }
 

@@ -11,7 +11,7 @@ namespace chromeball {
 // composite.
 FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& prepared,
                                const RenderSettings& settings, const Progress& progress,
-                               const std::atomic<bool>& stop, RenderControl* control);
+                               const Stop& stop, RenderControl* control);
 
 // The local scene of a composite, and the probe's scale by its plate.
 

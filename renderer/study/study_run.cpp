@@ -102,7 +102,7 @@ void StudyRun::renderOne(const RenderKey& key, const Progress& progress,
     std::optional<Denoised> denoised = denoiseRender(
         result, [](double) {}, stop);
     if (!denoised) return;
-    const double remaining = remainingNoise(*denoised);
+    const double remaining = remainingNoise(relativeErrors(*denoised));
     if (!(noise < remaining)) noise = remaining;
     image = std::move(denoised->color);
   }

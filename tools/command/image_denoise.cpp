@@ -13,9 +13,11 @@
 #include "image/io/write_image.h"
 #include "image_files.h"
 #include "messages.h"
+#include "noise_in_words.h"
 #include "progress_bar.h"
 #include "session/denoised_image.h"
 #include "session/memory_estimate.h"
+#include "session/render_report.h"
 
 namespace chromeball {
 namespace {
@@ -94,12 +96,15 @@ void run(const ImageDenoiseArguments& arguments) {
   output.placement = file.placement;
   Image noisy = withColor(*findColorAndAlpha(file), color.mean);
   output.layers.push_back({"", noisy.channels == 4 ? "RGBA" : "RGB", std::move(noisy)});
-  const double before = metadataNumber(output.metadata, "noise").value_or(NAN);
-  const double noise = addDenoised(std::move(denoised), before, output);
-  if (std::isfinite(noise)) output.metadata["denoised_noise"] = float(noise);
+  const auto before = [&](const char* name) {
+    return metadataNumber(output.metadata, name).value_or(NAN);
+  };
+  const DenoiseReport report = addDenoised(
+      std::move(denoised), {before("noise"), before("noise_median"), before("noise_p95")}, output);
+  addNoise(report, output.metadata);
   writeKept(arguments.output, std::move(output), arguments.input);
   say("noise {}: {}\n",
-      std::isfinite(noise) ? fmt::format("about {:.2f}%", 100 * noise) : "unknown",
+      std::isfinite(report.noise) ? "about " + inWords(report, report.relative) : "unknown",
       printableName(arguments.output));
 }
 

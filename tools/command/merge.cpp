@@ -14,6 +14,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "messages.h"
+#include "noise_in_words.h"
 #include "parts/merge.h"
 #include "progress_bar.h"
 #include "render_hints.h"
@@ -75,9 +76,9 @@ void run(const MergeArguments& arguments) {
   }
   addExcluded(whole.result, messages);
   print(messages);
-  say("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samplesPerPixel(),
-      parts.paths().size(), parts.paths().size() == 1 ? "" : "s", inWords(finished.noise),
-      inWords(finished.denoised), printable(fmt::format("{}", fmt::join(arguments.outputs, ", "))));
+  say("{} samples per pixel of {} part{}, noise {}: {}\n", whole.result.samplesPerPixel(),
+      parts.paths().size(), parts.paths().size() == 1 ? "" : "s", noiseInWords(finished),
+      printable(fmt::format("{}", fmt::join(arguments.outputs, ", "))));
 }
 
 }  // namespace

@@ -23,7 +23,11 @@ struct ProbeAlignArguments {
   bool json = false;
 };
 
-constexpr double kPoor = 0.5;  // correlation
+// Correlation: a bright sky over dark ground alone gives 0.5 to 0.75, probes of one place above
+// 0.9.
+constexpr double kAgrees = 0.8;
+
+bool agrees(const ProbeFit& fit) { return fit.correlation >= kAgrees; }
 
 JsonValue toJson(const ProbeFit& fit) {
   const Rotation::Angles angles = fit.rotation.angles();
@@ -41,6 +45,7 @@ JsonValue toJson(const ProbeAlignArguments& arguments, const ProbeAlignment& ali
   const dvec3& errors = alignment.standardErrors;
   json["standard_error"] = alignment.standardError();
   json["standard_errors_xyz"] = vectorToJson(errors);
+  json["agrees"] = agrees(alignment);
   json["ambiguous"] = !alignment.others.empty();
   json["axis"] = alignment.axis ? vectorToJson(*alignment.axis) : JsonValue();
   json["others"] = JsonValue::array();
@@ -72,8 +77,11 @@ void warnOfDoubt(const ProbeAlignment& alignment) {
     warn("ambiguous: {} other rotation{} as well, such as {}{}", count,
          count == 1 ? " fits" : "s fit", text(alignment.others[0].rotation.angles()), where);
   }
-  if (alignment.correlation < kPoor)
-    warn("the correlation is {:.2g}: the probes may be of different places", alignment.correlation);
+  if (!agrees(alignment))
+    warn(
+        "found no agreement: the correlation is {:.2g}, and above 0.9 where both show one place; "
+        "the rotation is only the best of bad ones",
+        alignment.correlation);
 }
 
 Image loadAligned(const std::string& file, const std::string& mapping, const char* option) {

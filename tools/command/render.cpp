@@ -22,6 +22,7 @@
 #include "interrupt.h"
 #include "lighting/methods.h"
 #include "messages.h"
+#include "noise_in_words.h"
 #include "parts/checkpoint.h"
 #include "progress_bar.h"
 #include "render_hints.h"
@@ -72,11 +73,10 @@ class ImageRender {
             },
             viewers_) {}
 
-  // The image, ready to be written except for its state. Ends early if `stop` is set.
+  // The image, ready to be written except for its state. Ends early if `stop` says so.
   // `fractionOfAll`: maps the fraction done of this image to the fraction of all work.
   FinishedRender run(const PreparedScene& prepared,
-                     const std::function<double(double)>& fractionOfAll,
-                     const std::atomic<bool>& stop) {
+                     const std::function<double(double)>& fractionOfAll, const Stop& stop) {
     const RenderDescription& description = loaded_.description;
     for (Viewer* viewer : viewers_) viewer->begin(description.output.files.front());
     const auto progress = [&](double fraction) {
@@ -123,14 +123,16 @@ void printOutcome(const RenderDescription& description, const FinishedRender& re
   const auto& checkpoint = description.run.checkpoint;
   if (render.interrupted)
     throw Interrupted(fmt::format("interrupted; the image so far is saved{}{}",
-                                  description.settings.denoise ? ", not denoised" : "",
+                                  result.denoised                ? ", denoised"
+                                  : description.settings.denoise ? ", not denoised"
+                                                                 : "",
                                   checkpoint && std::filesystem::exists(*checkpoint)
                                       ? fmt::format("; --resume goes on from {}", *checkpoint)
                                       : ""));
   if (!quiet)
-    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}{}: {}\n", render.samplesPerPixel(),
-               guidedInWords(render), result.seconds, inWords(result.noise),
-               inWords(result.denoised), exposure ? ", " + chosenInWords(*exposure) : "",
+    fmt::print("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samplesPerPixel(),
+               guidedInWords(render), result.seconds, noiseInWords(result),
+               exposure ? ", " + chosenInWords(*exposure) : "",
                printable(fmt::format("{}", fmt::join(description.output.files, ", "))));
 }
 
@@ -138,6 +140,7 @@ void writeImages(const RenderDescription& description, const LoadedScene& loaded
                  const FinishedRender& result, PhaseSeconds seconds) {
   Stopwatch watch;
   print(writeOutputs(description, result.image));
+  if (const auto& map = description.output.noiseMap) writeNoiseMap(*map, result);
   seconds.render = result.seconds;
   seconds.write = watch.lap();
   if (const auto& stats = description.output.stats)
@@ -172,7 +175,9 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   seconds.build = prepared.buildSeconds;
   seconds.prepare = prepared.prepareSeconds;
   prepareOutputs(loaded.description, loaded.files);
-  catchInterrupts();
+  catchInterrupts(description.settings.denoisesAtEnd()
+                      ? "interrupted: denoising what there is; Ctrl-C again leaves without"
+                      : "");
   watch.lap();
   std::optional<float> exposure;
   if (needsExposure(loaded.description)) {
@@ -187,8 +192,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
     print(viewers.messages(), options.quiet());  // after the last error that input can cause
     print(outputMessages, options.quiet());
     print(loaded.messages, options.quiet());
-    return render.run(
-        prepared, [](double fraction) { return fraction; }, interrupted);
+    return render.run(prepared, [](double fraction) { return fraction; }, {interrupted, leaving});
   }();
   addState(loaded, part, result);
   if (result.render.samples == 0)  // must not overwrite an image that may be complete
@@ -204,9 +208,12 @@ bool isFinished(const SequenceFrame& frame) {
   Settings all = frame.scene.settings;
   all.merge(frame.given);
   const auto files = all.get<std::vector<std::string>>("output.file");
-  const auto stats = all.getIfGiven<std::string>("stats");
   const auto exists = [](const std::string& path) { return std::filesystem::exists(path); };
-  return std::ranges::all_of(files, exists) && (!stats || exists(*stats));
+  const auto isThere = [&](const char* name) {
+    const auto file = all.getIfGiven<std::string>(name);
+    return !file || exists(*file);
+  };
+  return std::ranges::all_of(files, exists) && isThere("stats") && isThere("noise-map");
 }
 
 // What a frame writes is no other frame's, and not read by any.
@@ -218,7 +225,7 @@ void checkFiles(const Sequence& sequence) {
     all.merge(frame.given);
     for (const std::string& file : all.get<std::vector<std::string>>("output.file"))
       outputs.push_back(file);
-    for (const char* name : {"stats", "checkpoint"})
+    for (const char* name : {"stats", "noise-map", "checkpoint"})
       if (const auto file = all.getIfGiven<std::string>(name)) outputs.push_back(*file);
     if (const auto probe = all.getIfGiven<std::string>("probe.file")) inputs.push_back(*probe);
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/file.h"
+#include "description/capabilities.h"
 
 namespace chromeball {
 namespace {
@@ -55,6 +56,24 @@ void addDepthCuts(const RenderSettings& settings, const DepthCut& cut, Messages&
   }
 }
 
+// Where the samples or the time ended the render before the noise was as low as was asked for. Two
+// passes have a message of their own.
+void addNoiseLimit(const RenderDescription& description, const FinishedRender& result,
+                   Messages& messages) {
+  const RenderSettings& settings = description.settings;
+  const bool hasTwoPasses = description.composite && description.composite->passes == Passes::Two;
+  if (!settings.noiseLimit || hasTwoPasses || result.render.interrupted ||
+      !(result.noise.noise > *settings.noiseLimit))
+    return;
+  const bool byTime = settings.timeLimit && result.render.samples < settings.samples;
+  addNote(
+      messages, "{}: the noise is {:.3g}%, not {:g}%: the {} ended the render before",
+      namedOrigin(description, "render.noise"), 100 * result.noise.noise,
+      100 * *settings.noiseLimit,
+      byTime ? "limit of time" : fmt::format("limit of {} samples per pixel", settings.samples));
+  messages.back().remedy = Remedy{byTime ? "render.time" : "render.samples", {}};
+}
+
 }  // namespace
 
 std::string limitGiven(DepthLimit limit, const RenderSettings& settings) {
@@ -90,6 +109,11 @@ Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared
   addExcluded(result.render, messages);
   addDepthCuts(description.settings, result.render.depthCut, messages);
   messages.insert(messages.end(), result.messages.begin(), result.messages.end());
+  const RenderSettings& settings = description.settings;
+  if (settings.clamp && result.render.clamped.count == 0)
+    addNote(messages, "{}: no sample was above {:g}", namedOrigin(description, "clamp"),
+            *settings.clamp);
+  if (!settings.isPart()) addNoiseLimit(description, result, messages);
   if (description.composite || description.settings.isPart()) return messages;
   if (!result.render.interrupted)
     if (const auto why = whyBlack(loaded, prepared.world->accel, result.render))
@@ -97,18 +121,6 @@ Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared
   if (const auto why = whyWhite(loaded, result.render))
     messages.push_back({Message::Kind::Note, *why});
   return messages;
-}
-
-std::string inWords(const ImageNoise& n) {
-  if (!std::isfinite(n.noise)) return "unknown";
-  return fmt::format("{:.2f}% (median of the pixels {:.2f}%, 95% of them below {:.2f}%)",
-                     100 * n.noise, 100 * n.median, 100 * n.p95);
-}
-
-std::string inWords(const std::optional<DenoiseReport>& denoised) {
-  if (!denoised) return "";
-  if (!std::isfinite(denoised->noise)) return "; denoised";
-  return fmt::format("; denoised to about {:.2f}%", 100 * denoised->noise);
 }
 
 }  // namespace chromeball

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "render/render.h"
-#include "session/denoised_image.h"
 #include "session/load_scene.h"
 #include "session/render_loaded.h"
 #include "trace/accel.h"
@@ -29,9 +28,5 @@ void addExcluded(const RenderResult& result, Messages& messages);
 // named first.
 std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
                                     const RenderResult& result);
-
-// The noise of an image in words: "1.20% (median of the pixels ...)"; "; denoised to about 0.3%".
-std::string inWords(const ImageNoise& n);
-std::string inWords(const std::optional<DenoiseReport>& denoised);
 
 }  // namespace chromeball

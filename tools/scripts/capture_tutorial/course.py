@@ -146,11 +146,12 @@ def composite(run):
             "from the "
             "plate. The objects are a ball, a box and a ring of 10 cm. desk-scene.toml:", indented(SCENE),
             indented("chromeball render desk-scene.toml"), fenced(said),
-            "The picture shows objects that stand on the desk in the right perspective. There is no truth to "
-            "measure its light "
-            "by: the ball was in another room. The scatter is large, because what the camera sees below the "
-            "horizon is mostly "
-            "not the desk; a model of the desk as the local scene is better than an endless ground."]
+            "The picture shows objects that stand on the desk in the right perspective, with grey, soft shadows. "
+            "There is no truth to measure its light by: the ball was in another room. The light's scale and "
+            "colour are those of the desk around the objects, of which the photograph tells that it is half as "
+            "bright as a white surface; of all that the camera sees below the horizon most is not the desk. A "
+            "grey desk turns its colour into a colour of the light: if it is known to be bluish, say so "
+            "(`ground_reflectance = [0.45, 0.5, 0.55]`)."]
 
 
 def merged(run, folder):
