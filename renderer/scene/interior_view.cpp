@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/framing.h"
-
 #include <array>
+#include <set>
 
-#include "scene/eye_view.h"
+#include "scene/choose_view.h"
 #include "scene/placed_triangles.h"
 
 namespace chromeball {
@@ -161,13 +160,23 @@ bool contains(const Bounds& box, const dvec3& p) {
          glm::all(glm::lessThanEqual(p, dvec3(box.max)));
 }
 
-// Whether one of the four sides of the model is open: from outside it, most of the space that the
-// eye sees is visible.
-bool hasOpenSide(const std::vector<Sight>& sights, const dvec3& eye, const Bounds& box,
-                 const OutsideViews& views) {
+// Whether the eye sees furniture besides the walls.
+bool seesSeveral(const std::vector<Sight>& sights) {
+  constexpr size_t kMinSeen = 3;
+  std::set<int> seen;
+  for (const Sight& s : sights)
+    if (s.isWall()) seen.insert(s.instance);
+  return seen.size() >= kMinSeen;
+}
+
+}  // namespace
+
+std::optional<dvec3> openSides(const std::vector<Sight>& sights, const dvec3& eye,
+                               const Bounds& box, const OutsideViews& outside) {
   constexpr double kMaxShown = 0.5;
   constexpr int kSteps = 16;
   const double whole = glm::length(box.size());
+  std::optional<dvec3> open;
   for (const int axis : {0, 2})
     for (const bool upper : {false, true}) {
       double space = 0, shown = 0;
@@ -178,23 +187,22 @@ bool hasOpenSide(const std::vector<Sight>& sights, const dvec3& eye, const Bound
           if (!contains(box, point)) break;
           const double volume = distance * distance * std::min(s.distance, whole);
           space += volume;
-          if (views[size_t(axis)].shows(point, upper)) shown += volume;
+          if (outside[size_t(axis)].shows(point, upper)) shown += volume;
         }
-      if (shown > kMaxShown * space) return true;
+      if (!(shown > kMaxShown * space)) continue;
+      if (!open) open = dvec3(0);
+      (*open)[axis] += upper ? 1 : -1;
     }
-  return false;
+  return open;
 }
 
-}  // namespace
-
-std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& instances) {
+std::optional<InteriorView> interiorView(const Scene& scene, const std::vector<int>& instances,
+                                         const Bounds& box, const OutsideViews& outside) {
   constexpr double kEyeHeight = 0.55;  // as a fraction of the room's height
   constexpr double kLeastRoom = 0.02;  // of the footprint; the legs of a table are smaller
   constexpr float kFov = kPi / 3;
-  const Bounds box = bounds(scene, instances);
-  if (!(glm::min(box.size().x, glm::min(box.size().y, box.size().z)) > 0)) return std::nullopt;
-  const OutsideViews outside = outsideViews(scene, instances, box);
-  if (!isFurnishedRoom(box, instances) && !faceInwards(outside)) return std::nullopt;
+  const bool isHollow = facesOf(outside).areBacks();
+  if (!isFurnishedRoom(box, instances) && !isHollow) return std::nullopt;
 
   const double height = glm::mix(double(box.min.y), double(box.max.y), kEyeHeight);
   const Section section(scene, instances, box, height);
@@ -219,9 +227,11 @@ std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& i
       }
     }
   if (maxArea == 0) return std::nullopt;
-  const std::vector<Sight> sights = sightsFrom(scene, instances, eye);
-  if (!standsOnFloor(sights) || hasOpenSide(sights, eye, box, outside)) return std::nullopt;
-  return Camera::lookAt(vec3(eye), vec3(target), vec3(0, 1, 0), kFov);
+  std::vector<Sight> sights = sightsFrom(scene, instances, eye);
+  if (!standsOnFloor(sights) || openSides(sights, eye, box, outside)) return std::nullopt;
+  if (!isHollow && !seesSeveral(sights)) return std::nullopt;
+  return InteriorView{Camera::lookAt(vec3(eye), vec3(target), vec3(0, 1, 0), kFov),
+                      std::move(sights)};
 }
 
 }  // namespace chromeball
