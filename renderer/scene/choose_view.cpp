@@ -35,7 +35,7 @@ Areas areasOf(const Scene& scene, const std::vector<int>& instances) {
 
 // The angles for a shape with a front, and for one that is long; nullopt for any other.
 std::optional<ViewAngles> anglesForShape(const Areas& areas, const dvec3& size) {
-  constexpr double kPlane = 0.999, kThin = 0.05, kLong = 2;
+  constexpr double kPlane = 0.999, kThin = 0.12, kLong = 1.5;
   const dvec3& front = areas.vector;
   if (glm::length(front) > kPlane * areas.sum && areas.sum > 0) return anglesOf(front);
   const double width = std::max(size.x, size.z);

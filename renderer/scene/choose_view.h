@@ -24,7 +24,7 @@ struct ChosenView {
 //   is seen from its front;
 // - what is flat and level: it is seen from higher above;
 // - a box with one to three open sides, which is seen through these;
-// - what is at least twice as long from front to back as from left to right: it is seen from its
+// - what is longer from front to back than one and a half times its width: it is seen from its
 //   right side, towards its front.
 // O(triangles).
 ChosenView chooseView(const Scene& scene, const std::vector<int>& instances);
@@ -34,12 +34,14 @@ ChosenView chooseView(const Scene& scene, const std::vector<int>& instances);
 // floor and furniture are below it, none of the four sides of the model is open, and one of these
 // holds:
 // - Seen from the six sides of the bounding box, 60% of the nearest surfaces are back faces: walls
-//   that face inwards.
+//   that face inwards; the walls that are seen from the position are mostly planes of a few
+//   directions, around a fifth or more of the box. (A body turned inside out has no such walls.)
 // - The bounding box is 2 to 10 metres high and at least 2.5 metres wide, there are at least five
 //   instances, and three are seen from the position: furniture within walls with two faces. (Size
 //   and counts exclude cups and rows of them, whose walls also surround a free position.)
-// The camera is at 55% of the room's height, at the position and in the direction from which it
-// sees the largest area of a horizontal section through the room.
+// The camera is at 55% of the height from floor to ceiling, at the position and in the direction
+// from which it sees the largest area of a horizontal section through the room; under a roof, if
+// there is one somewhere.
 struct InteriorView {
   Camera camera;
   std::vector<Sight> sights;  // from its position
@@ -48,7 +50,8 @@ std::optional<InteriorView> interiorView(const Scene& scene, const std::vector<i
                                          const Bounds& box, const OutsideViews& outside);
 
 // The horizontal directions to the open sides of the model, through which most of the space that
-// the eye sees is visible from outside: their sum; empty if there are none.
+// the eye sees, under a roof if it is under one, is visible from outside: their sum; empty if there
+// are none.
 std::optional<glm::dvec3> openSides(const std::vector<Sight>& sights, const glm::dvec3& eye,
                                     const Bounds& box, const OutsideViews& outside);
 
