@@ -79,8 +79,7 @@ constexpr Feature kOrbit{"a turned camera", "orbit",
                          [](const D& d) { return d.origins.has("orbit") || d.camera.orbit != 0; }};
 constexpr Feature kTurntable{"turned models", "turntable",
                              [](const D& d) { return d.stand.turntable.has_value(); }};
-constexpr Feature kMovedModels{"models that are dropped or turned", "render.drop",
-                               [](const D& d) { return d.stand.movesModels(); }};
+constexpr Feature kDrop{"dropped models", "render.drop", [](const D& d) { return d.stand.drops; }};
 constexpr Feature kPlainGround{"a ground", "render.ground",
                                [](const D& d) { return d.stand.hasGround; }};
 constexpr Feature kOwnGround{"a composite that does not name the ground", "", [](const D& d) {
@@ -216,7 +215,8 @@ constexpr std::array kConflicts = {
     Conflict{kTurntable, kPlate, "the plate of a composite does not turn"},
     Conflict{kTurntable, kShutter,
              "models do not turn while the shutter is open; turn the camera, or close the shutter"},
-    Conflict{kMovedModels, kFromMemory, "is for models of files; build the scene as it shall be"},
+    Conflict{kTurntable, kFromMemory, "is for models of files; build the scene as it shall be"},
+    Conflict{kDrop, kFromMemory, "is for models of files; build the scene as it shall be"},
     Conflict{kPlainGround, kOwnGround,
              "[composite] has a ground of its own; give `ground = true` and `ground_height` there"},
     Conflict{kPlainGround, kSurroundings,
