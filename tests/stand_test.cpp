@@ -33,9 +33,7 @@ class Model {
     addTriangle(w, {}, {{"name", "falls"}, {"translation", {0, 3, 0}}});
     if (hasCamera) {
       w.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 1}}}});
-      const int node =
-          w.add("nodes", {{"camera", 0}, {"name", "front"}, {"translation", {0, 3, 9}}});
-      w.root["scenes"][0]["nodes"].push_back(node);
+      w.add("nodes", {{"camera", 0}, {"name", "front"}, {"translation", {0, 3, 9}}});
     }
     w.add("animations",
           {{"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}},
@@ -134,7 +132,7 @@ TEST(Stand, ATurntableIsAnOrbitTheOtherWay) {
     return view.at(glm::dvec3(loaded.scene.meshes[0].positions[1]))->position;
   };
   EXPECT_LT(glm::distance(seen("turntable", "50"), seen("orbit", "-50")), 1e-4);
-  EXPECT_GT(glm::distance(seen("turntable", "50"), seen("turntable", "0")), 0.1);
+  EXPECT_GT(glm::distance(seen("turntable", "50"), seen("turntable", "0")), 0.02);
 }
 
 // Each frame of a turntable is the still at its angle.
@@ -175,7 +173,7 @@ TEST(Stand, TheWholeAnimationIsInViewAtEachOfItsTimes) {
 
 TEST(Stand, AViewTakesThePlaceOfTheModelsAndTheFilesCamera) {
   const Model model(true);
-  EXPECT_EQ(model.load({}).camera.name + model.load({}).camera.node, "front");
+  EXPECT_EQ(model.load({}).camera.node, "front");
   const Given right{{"camera.view", "90,0"}};
   EXPECT_NEAR(model.load(right).camera.back.x, 1, 1e-6);
   const std::string placed = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nfov = 10\n";

@@ -121,11 +121,12 @@ std::optional<Shutter> shutterOf(const Settings& s) {
 std::optional<ViewAngles> plannedView(const Settings& s) {
   const auto angles = s.getIfGiven<std::vector<double>>("camera.view");
   if (!angles) return {};
-  const std::vector<double>& a = *angles;
-  if (std::fabs(a[1]) > 90)
+  constexpr double kUsualElevation = 18;
+  const double elevation = angles->size() > 1 ? (*angles)[1] : kUsualElevation;
+  if (std::fabs(elevation) > 90)
     throwInput("{}: the elevation, {:g} degrees, should be from -90 to 90",
-               s.location("camera.view"), a[1]);
-  return ViewAngles{a[0], a[1], a.size() > 2 ? a[2] : 0};
+               s.location("camera.view"), elevation);
+  return ViewAngles{angles->front(), elevation, angles->size() > 2 ? angles->back() : 0};
 }
 
 StandDescription plannedStand(const Settings& s) {

@@ -74,15 +74,16 @@ std::vector<Setting> cameraRows() {
        .help = "Vertical field of view. A camera that frames the model stands accordingly nearer "
                "or farther."},
       {.key = "view",
-       .argument = "AZIMUTH,ELEVATION[,ROLL]",
+       .argument = "AZIMUTH[,ELEVATION[,ROLL]]",
        .type = Numbers,
-       .form = "two angles, or three",
-       .counts = {2, 3},
+       .form = "one angle, two or three",
+       .counts = {1, 2, 3},
        .range = {.min = -360, .max = 360},
        .unit = "degrees",
        .absent = "24, 18; or what suits the model's shape",
        .help = "The direction from which a camera frames the model: 0,0 from the front (+Z), 90,0 "
-               "from the right (+X), 0,90 from above. ROLL turns the camera counter-clockwise. A "
+               "from the right (+X), 0,90 from above; an azimuth alone from 18 degrees above. ROLL "
+               "turns the camera counter-clockwise. A "
                "room is then seen from outside. The model's own cameras are not used."},
       {.key = "look_at_node",
        .option = "look-at",

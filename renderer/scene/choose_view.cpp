@@ -38,10 +38,9 @@ std::optional<ViewAngles> anglesForShape(const Areas& areas, const dvec3& size) 
   constexpr double kPlane = 0.999, kThin = 0.12, kLong = 1.5;
   const dvec3& front = areas.vector;
   if (glm::length(front) > kPlane * areas.sum && areas.sum > 0) return anglesOf(front);
-  const double width = std::max(size.x, size.z);
-  if (size.x < kThin * std::max(size.y, size.z)) return ViewAngles{front.x < 0 ? -90.0 : 90.0, 0};
-  if (size.z < kThin * std::max(size.x, size.y)) return ViewAngles{front.z < 0 ? 180.0 : 0.0, 0};
-  if (size.y < kThin * width) return ViewAngles{kUsual.azimuth, 45};
+  if (size.x < kThin * std::min(size.y, size.z)) return ViewAngles{front.x < 0 ? -90.0 : 90.0, 0};
+  if (size.z < kThin * std::min(size.x, size.y)) return ViewAngles{front.z < 0 ? 180.0 : 0.0, 0};
+  if (size.y < kThin * std::min(size.x, size.z)) return ViewAngles{kUsual.azimuth, 45};
   if (size.z > kLong * size.x) return ViewAngles{90 - kUsual.azimuth, kUsual.elevation};
   return {};
 }

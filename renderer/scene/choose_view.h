@@ -37,7 +37,7 @@ ChosenView chooseView(const Scene& scene, const std::vector<int>& instances);
 //   that face inwards; the walls that are seen from the position are mostly planes of a few
 //   directions, around a fifth or more of the box. (A body turned inside out has no such walls.)
 // - The bounding box is 2 to 10 metres high and at least 2.5 metres wide, there are at least five
-//   instances, and three are seen from the position: furniture within walls with two faces. (Size
+//   instances, and two are seen from the position: furniture within walls with two faces. (Size
 //   and counts exclude cups and rows of them, whose walls also surround a free position.)
 // The camera is at 55% of the height from floor to ceiling, at the position and in the direction
 // from which it sees the largest area of a horizontal section through the room; under a roof, if

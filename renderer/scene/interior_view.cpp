@@ -203,7 +203,7 @@ bool fills(const std::vector<Sight>& sights, const Bounds& box) {
 
 // Whether the eye sees furniture besides the walls.
 bool seesSeveral(const std::vector<Sight>& sights) {
-  constexpr size_t kMinSeen = 3;
+  constexpr size_t kMinSeen = 2;
   std::set<int> seen;
   for (const Sight& s : sights)
     if (s.isWall()) seen.insert(s.instance);

@@ -204,9 +204,8 @@ AutomaticView findView(const RenderDescription& description, const PlacedModels&
 void chooseSides(RenderDescription& description, const AutomaticView& view, const Scene& scene) {
   const auto emits = [&](const Instance& i) { return scene.materials[size_t(i.material)].emits(); };
   const bool isLit = !scene.lights.empty() || std::ranges::any_of(scene.instances, emits);
-  description.singleSided = view.isDark && !isLit && description.run.makesImage
-                                ? SingleSided::Light
-                                : SingleSided::Camera;
+  if (view.isDark && !isLit && description.run.makesImage)
+    description.singleSided = SingleSided::Light;
 }
 
 }  // namespace
@@ -280,7 +279,8 @@ PlacedModels placeModels(RenderDescription& description, ModelCache& cache,
   if (description.lighting.lamps == 0) scene.lights.clear();
   for (const Lamp& lamp : description.lamps) addLamp(scene, lamp, placed.origin);
   removeLamps(description, scene);
-  if (description.choosesSides) chooseSides(description, placed.view, scene);
+  if (description.choosesSides && description.singleSided == SingleSided::Camera)
+    chooseSides(description, placed.view, scene);
   for (Material& material : scene.materials) material.singleSided = description.singleSided;
   if (description.straightGlassShadows) passShadowsStraight(scene.materials);
   return placed;
