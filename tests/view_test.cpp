@@ -168,7 +168,7 @@ TEST(View, RowsAreSeenFromTheirSide) {
 TEST(View, ARowWithACupIsSeenFromOutside) {
   Scene row = empty();
   for (int i = 0; i < 6; ++i) addSphere(row, 0, vec3(2 * i, 1.25f, 0), 1, 8);
-  addTurned(row, vec3(-2, 0, 0),
+  addTurned(row, vec3(-2.5f, 0, 0),
             {{0, 0}, {1.3f, 0}, {1.3f, 2.5f}, {1.2f, 2.5f}, {1.2f, 0.1f}, {0, 0.1f}});
   EXPECT_TRUE(shows(framingCamera(row, kAspect), row));
 }
@@ -186,7 +186,7 @@ TEST(View, BottlesAndTrunksTurnedInsideOutAreSeenFromOutside) {
   for (Scene* scene : {&bottle, &figure}) {
     turnInsideOut(*scene);
     const Framing framing(*scene, kAspect);
-    EXPECT_TRUE(shows(framing.camera(), *scene));
+    EXPECT_TRUE(shows(framing.camera(), *scene)) << (scene == &bottle ? "bottle" : "figure");
     EXPECT_TRUE(framing.isDark());
   }
 }

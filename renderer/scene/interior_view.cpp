@@ -171,20 +171,22 @@ bool contains(const Bounds& box, const dvec3& p) {
          glm::all(glm::lessThanEqual(p, dvec3(box.max)));
 }
 
-// Whether most of the walls are level or upright planes of a few directions. (Those of a bottle or
-// of a body that is turned inside out have many.)
+// Whether most of the area of the walls is level or upright planes of a few directions. (Those of a
+// bottle or of a body that is turned inside out have many.)
 bool hasFlatWalls(const std::vector<Sight>& sights) {
-  constexpr double kLevel = 0.95, kUpright = 0.2, kMinFlat = 0.6;
+  constexpr double kLevel = 0.95, kUpright = 0.2, kMinFlat = 0.6, kLeastCosine = 0.1;
   constexpr size_t kMostPlanes = 6;
   std::array<double, kDirections> upright{};  // by azimuth
   double walls = 0, flat = 0;
   for (const Sight& s : sights) {
     if (!s.isWall()) continue;
-    ++walls;
+    const double cosine = std::fabs(glm::dot(s.normal, s.direction));
+    const double area = s.distance * s.distance / std::max(cosine, kLeastCosine);
+    walls += area;
     const double slope = std::fabs(s.normal.y);
-    flat += slope > kLevel;
+    if (slope > kLevel) flat += area;
     const double turn = std::atan2(s.normal.x, s.normal.z) / (2 * kPiD) + 1;
-    if (slope < kUpright) ++upright[size_t(std::lround(turn * kDirections)) % kDirections];
+    if (slope < kUpright) upright[size_t(std::lround(turn * kDirections)) % kDirections] += area;
   }
   std::ranges::sort(upright, std::greater());
   for (size_t i = 0; i < kMostPlanes; ++i) flat += upright[i];
