@@ -168,8 +168,8 @@ std::vector<Setting> renderRows() {
                    .unit = "metres",
                    .absent = "none",
                    .help = "Puts a matte grey plane under the model: at its lowest point, at all "
-                           "times of an animation, or at this height (y). With --shadow-catcher "
-                           "ground: the height of that."},
+                           "times of an animation, or at this height (y). The `ground` of a shadow "
+                           "catcher has the same height."},
                   {.key = "drop",
                    .type = Flag,
                    .help = "Moves the model up or down so that its lowest point, at all times of "
