@@ -266,7 +266,7 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
                                             "reference-samples",
                                             "reference-strategy"};
   GltfWriter w;
-  addTriangle(w);
+  addTriangle(w, {}, {{"name", "thing"}});
   w.root["animations"] = {
       {{"name", "Still"}, {"channels", json::array()}, {"samplers", json::array()}}};
   w.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
@@ -297,6 +297,12 @@ TEST_F(SlowCommandCompare, everyOptionThatChangesTheImageMakesAnotherComparison)
                                                 {"light-units", {"radiometric"}},
                                                 {"camera", {"Far"}},
                                                 {"camera-file", {folder_ / "camera.toml"}},
+                                                {"view", {"30,20"}},
+                                                {"look-at", {"thing"}},
+                                                {"fov", {"30"}},
+                                                {"zoom", {"2"}},
+                                                {"ground", {}},
+                                                {"drop", {}},
                                                 {"animation", {"Still"}},
                                                 {"animation-time", {"1"}},
                                                 {"variant", {"Red"}},

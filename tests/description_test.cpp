@@ -146,6 +146,13 @@ TEST(Description, WhatAProgramChangesIsInHeaderAndIdentity) {
       {"strategy", [](RenderDescription& j) { j.lighting.strategy = "bsdf"; }},
       {"scale", [](RenderDescription& j) { j.probe.scale = glm::dvec3(2); }},
       {"camera", [](RenderDescription& j) { j.camera.placed->position.x = 0.5f; }},
+      {"view", [](RenderDescription& j) { j.camera.view.emplace(); }},
+      {"node", [](RenderDescription& j) { j.camera.node = "a"; }},
+      {"fov", [](RenderDescription& j) { j.camera.fov = 30; }},
+      {"zoom", [](RenderDescription& j) { j.camera.zoom = 2; }},
+      {"turntable", [](RenderDescription& j) { j.stand.turntable = 20; }},
+      {"drop", [](RenderDescription& j) { j.stand.drops = true; }},
+      {"ground", [](RenderDescription& j) { j.stand.hasGround = true; }},
       {"lens",
        [](RenderDescription& j) {
          j.camera.lens = Lens{0.1f, 3};

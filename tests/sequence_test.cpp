@@ -377,7 +377,8 @@ TEST(Sequence, EachFrameMayHaveItsCache) {
   const auto cached = [&](const Words& more, const std::string& cache) {
     Words all{"--irradiance-cache", "0.5", "--cache", out / cache};
     all.insert(all.end(), more.begin(), more.end());
-    return words(model.scene(), all, out / "frame.#.exr");
+    const char* near = "[camera]\nposition = [0.5, 0.5, 4]\nlook_at = [0.5, 0.5, 0]\n";
+    return words(model.scene(near), all, out / "frame.#.exr");
   };
   run(cached({"--frames", "0:1"}, "light.#.cache"));
   for (const char* name : {"light.0.cache", "light.1.cache"})

@@ -73,8 +73,9 @@ std::vector<OptionValue> valuesOf(const Setting& s) {
       limit(s.range.min, s.range.excludesMin, -0.001);
       values.push_back({"0.25", true});
       values.push_back({"0.25,0,0.5", true});
+      values.push_back({"0,0", std::ranges::count(s.counts, 2) == 1});
       values.push_back({"0,0,0,1", std::ranges::count(s.counts, 4) == 1});
-      for (const char* text : {"0,0", "0,0,0,0,0", "0,0,nan", "1e300", "0,,0", "0,0,", "", "1 2"})
+      for (const char* text : {"0,0,0,0,0", "0,0,nan", "1e300", "0,,0", "0,0,", "", "1 2"})
         values.push_back({text, false});
       break;
     case SettingType::Choice:
@@ -175,7 +176,9 @@ class SettingsInAFile : public testing::Test {
     const auto add = [&](const char* other, const char* line) {
       if (s.key != other) toml += fmt::format("{} = {}\n", other, line);
     };
-    if (s.section == "camera" && s.key != "name" && s.key != "file") {
+    const bool isAlone =
+        s.key == "name" || s.key == "file" || s.key == "view" || s.key == "look_at_node";
+    if (s.section == "camera" && !isAlone) {
       add("position", "[0, 0, 5]"), add("look_at", "[0, 0, 0]");
       if (s.key == "aperture" || s.key == "focus") add("aperture", "1"), add("focus", "1");
     }

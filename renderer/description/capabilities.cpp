@@ -77,6 +77,17 @@ constexpr Feature kShutter{"an open shutter", "camera.shutter",
                            [](const D& d) { return d.camera.shutter.has_value(); }};
 constexpr Feature kOrbit{"a turned camera", "orbit",
                          [](const D& d) { return d.origins.has("orbit") || d.camera.orbit != 0; }};
+constexpr Feature kTurntable{"turned models", "turntable",
+                             [](const D& d) { return d.stand.turntable.has_value(); }};
+constexpr Feature kDrop{"dropped models", "render.drop", [](const D& d) { return d.stand.drops; }};
+constexpr Feature kPlainGround{"a ground", "render.ground",
+                               [](const D& d) { return d.stand.hasGround; }};
+constexpr Feature kOwnGround{"a composite that does not name the ground", "", [](const D& d) {
+                               return d.composite && d.composite->ground !=
+                                                         CompositeDescription::GroundPlane::IfNamed;
+                             }};
+constexpr Feature kFromMemory{"a scene from memory", "",
+                              [](const D& d) { return d.scene != nullptr; }};
 constexpr Feature kOrbitStep{"a turn while the shutter is open", "orbit-step",
                              [](const D& d) { return d.origins.has("orbit-step"); }};
 constexpr Feature kTransparent{"a transparent background", "transparent",
@@ -201,6 +212,15 @@ constexpr std::array kConflicts = {
     Conflict{kAutoExposure, kComposite,
              "a composite is shown as its photograph is; give a number of stops"},
     Conflict{kOrbit, kPlate, "the plate of a composite does not turn"},
+    Conflict{kTurntable, kPlate, "the plate of a composite does not turn"},
+    Conflict{kTurntable, kShutter,
+             "models do not turn while the shutter is open; turn the camera, or close the shutter"},
+    Conflict{kTurntable, kFromMemory, "is for models of files; build the scene as it shall be"},
+    Conflict{kDrop, kFromMemory, "is for models of files; build the scene as it shall be"},
+    Conflict{kPlainGround, kOwnGround,
+             "[composite] has a ground of its own; give `ground = true` and `ground_height` there"},
+    Conflict{kPlainGround, kSurroundings,
+             "[surroundings] have a floor of their own; leave one of the two out"},
     Conflict{kTransparent, kComposite,
              "is for plain renders; the layer alpha of a composite shows its objects"},
     Conflict{kScaleByPlate, kShadowCatcher,
@@ -247,8 +267,21 @@ constexpr std::array kRanges = {
     Range{"lighting.lights", "be finite, and not negative",
           [](const D& d) { return d.lighting.lamps >= 0 && std::isfinite(d.lighting.lamps); }},
     Range{"orbit", "be finite", [](const D& d) { return std::isfinite(d.camera.orbit); }},
+    Range{"turntable", "be finite",
+          [](const D& d) { return std::isfinite(d.stand.turntable.value_or(0)); }},
+    Range{"render.ground", "be finite",
+          [](const D& d) { return std::isfinite(d.stand.height.value_or(0)); }},
+    Range{"camera.view", "be finite",
+          [](const D& d) {
+            const ViewAngles v = d.camera.view.value_or(ViewAngles());
+            return std::isfinite(v.azimuth + v.elevation + v.roll);
+          }},
+    Range{"camera.zoom", "be above 0, and finite",
+          [](const D& d) { return d.camera.zoom > 0 && std::isfinite(d.camera.zoom); }},
     Range{"camera.fov", "be above 0, and below 180 degrees",
           [](const D& d) {
+            const double fov = d.camera.fov.value_or(90);
+            if (!(fov > 0 && fov < 180)) return false;
             const auto& placed = d.camera.placed;
             if (!placed) return true;
             const Camera& lens = placed->lens;

@@ -38,7 +38,13 @@ bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
 bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
 bool hasPaths(const D& d, const SceneContents&) { return followsPaths(d); }
 
+// A shadow catcher of nodes has a ground only if it names that.
+bool hasGround(const D& d, const SceneContents&) {
+  return !d.composite || std::ranges::count(d.composite->entry.localScene, "ground") > 0;
+}
+
 constexpr std::array kDependences = {
+    Dependence{"render.ground", "a shadow catcher on `ground`", hasGround},
     Dependence{"camera.shutter", "anything that moves",  // at the times of other frames it may
                [](const D& d, const SceneContents& c) {
                  return !d.camera.shutter || c.moves || d.run.isOfFrames;

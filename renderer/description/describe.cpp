@@ -138,12 +138,23 @@ Json orbitStep(const Shutter& shutter) {
 void addCamera(const CameraDescription& camera, Json& d) {
   d.update({{"camera", textOf(camera.name)},
             {"camera-file", textOf(camera.file)},
+            {"look-at", textOf(camera.node)},
+            {"fov", numberOf(camera.fov)},
+            {"zoom", camera.zoom != 1 ? Json(camera.zoom) : Json()},
             {"orbit", camera.orbit != 0 ? Json(camera.orbit) : Json()}});
+  if (const auto& view = camera.view)
+    d["view"] = fmt::format("{},{},{}", view->azimuth, view->elevation, view->roll);
   if (const auto& shutter = camera.shutter)
     d.update({{"shutter", shutter->frames},
               {"shutter-steps", shutter->steps},
               {"fps", shutter->fps},
               {"orbit-step", shutter->turn != 0 ? orbitStep(*shutter) : Json()}});
+}
+
+void addStand(const StandDescription& stand, Json& d) {
+  d["turntable"] = stand.turntable.value_or(0) != 0 ? Json(*stand.turntable) : Json();
+  d["drop"] = stand.drops;
+  if (stand.hasGround) d["ground"] = stand.height ? fmt::format("{}", *stand.height) : "auto";
 }
 
 // Options that hold for all models.
@@ -181,6 +192,7 @@ Json describe(const RenderDescription& description) {
   addRender(description, all);
   addLight(description, all);
   addCamera(description.camera, all);
+  addStand(description.stand, all);
   addModels(description, all);
   addComposite(description, all);
   addParts(description, all);

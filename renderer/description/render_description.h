@@ -38,9 +38,26 @@ struct CameraDescription {
   std::optional<std::string> file;    // that it was read from
   std::optional<Lens> lens;
   std::optional<Optics> optics;
-  double orbit = 0;                // turn around the models, degrees
-  bool turns = false;              // by `orbit` or while the shutter is open
-  std::optional<Shutter> shutter;  // nullopt: an image of one instant
+  // Of the camera that frames the models; either makes it take the place of the models' cameras.
+  std::optional<ViewAngles> view;   // nullopt: it suits their shape
+  std::optional<std::string> node;  // that it frames; nullopt: all
+  std::optional<double> fov;        // of any perspective camera, degrees; nullopt: its own
+  double zoom = 1;                  // divides the size of what any camera shows
+  double orbit = 0;                 // turn around the models, degrees
+  bool turns = false;               // by `orbit` or while the shutter is open
+  std::optional<Shutter> shutter;   // nullopt: an image of one instant
+
+  bool frames() const { return view || node; }
+};
+
+// Where the models stand, other than by their own placements.
+struct StandDescription {
+  std::optional<double> turntable;  // turn about the vertical through their centre, degrees
+  bool drops = false;               // their lowest point to the ground, or to height 0
+  bool hasGround = false;           // a matte plane, which a shadow catcher has by its own choice
+  std::optional<double> height;     // of the ground in the world, metres; nullopt: the lowest point
+
+  bool movesModels() const { return turntable || drops; }
 };
 
 struct ProbeDescription {
@@ -116,6 +133,7 @@ struct RenderDescription : SceneParts {
   // From memory (scene/builder), in place of models; null: none.
   std::shared_ptr<const Scene> scene;
   CameraDescription camera;
+  StandDescription stand;
   ProbeDescription probe;
   LightingDescription lighting;
   std::optional<CompositeDescription> composite;
@@ -124,6 +142,7 @@ struct RenderDescription : SceneParts {
   std::optional<ImageSize>
       size;  // nullopt: the height of `settings`, as wide as the model's camera
   SingleSided singleSided = SingleSided::Camera;
+  bool choosesSides = false;          // loadScene() may decide for SingleSided::Light
   bool straightGlassShadows = false;  // passShadowsStraight()
 
   OutputDescription output;

@@ -118,6 +118,27 @@ std::optional<Shutter> shutterOf(const Settings& s) {
   return shutter;
 }
 
+std::optional<ViewAngles> plannedView(const Settings& s) {
+  const auto angles = s.getIfGiven<std::vector<double>>("camera.view");
+  if (!angles) return {};
+  constexpr double kUsualElevation = 18;
+  const double elevation = angles->size() > 1 ? (*angles)[1] : kUsualElevation;
+  if (std::fabs(elevation) > 90)
+    throwInput("{}: the elevation, {:g} degrees, should be from -90 to 90",
+               s.location("camera.view"), elevation);
+  return ViewAngles{angles->front(), elevation, angles->size() > 2 ? angles->back() : 0};
+}
+
+StandDescription plannedStand(const Settings& s) {
+  StandDescription stand{.turntable = s.getIfGiven<double>("turntable"),
+                         .drops = s.get<bool>("render.drop"),
+                         .hasGround = s.has("render.ground")};
+  double height = 0;  // the only other text is "auto"
+  if (stand.hasGround && toNumber(s.get<std::string>("render.ground"), height))
+    stand.height = height;
+  return stand;
+}
+
 CameraDescription plannedCamera(const SceneFile& file) {
   const Settings& s = file.settings;
   return {.placed = file.camera,
@@ -125,6 +146,10 @@ CameraDescription plannedCamera(const SceneFile& file) {
           .file = s.getIfGiven<std::string>("camera.file"),
           .lens = file.lens,
           .optics = file.optics,
+          .view = plannedView(s),
+          .node = s.getIfGiven<std::string>("camera.look_at_node"),
+          .fov = s.getIfGiven<double>("camera.fov"),
+          .zoom = s.getIfGiven<double>("camera.zoom").value_or(1),
           .orbit = s.getIfGiven<double>("orbit").value_or(0),
           .turns = s.has("orbit") || s.has("orbit-step"),
           .shutter = shutterOf(s)};
@@ -219,12 +244,15 @@ RenderDescription planRender(SceneFile scene, const Settings& over) {
     if (const auto* given = s.find(setting.name()); given && !scene.origins.has(setting.name()))
       description.origins.set(setting.name(), given->location);
   description.camera = plannedCamera(scene);
+  description.stand = plannedStand(s);
   description.probe = plannedProbe(scene);
   if (scene.plateScale) description.origins.set("probe.scale", *scene.plateScale);
   description.lighting = plannedLighting(s);
   description.settings = integratorSettings(scene);
   description.size = s.getIfGiven<ImageSize>("render.size");
-  description.singleSided = s.choice<SingleSided>("render.single_sided");
+  description.choosesSides = !s.has("render.single_sided");
+  if (!description.choosesSides)
+    description.singleSided = s.choice<SingleSided>("render.single_sided");
   description.straightGlassShadows = s.choice<bool>("render.glass_shadows");
   description.output = plannedOutput(s);
   description.output.makesFolders = !over.has("output.file");

@@ -182,8 +182,26 @@ std::vector<double> rotationAt(const std::vector<ProbeTurn>& keys, double second
       .numbers();
 }
 
+// The options for a camera that frames the models take the place of the file's camera.
+void mergeFraming(SceneFile& file, const Settings& over) {
+  for (const char* name : {"camera.view", "camera.look_at_node"}) {
+    if (!over.has(name)) continue;
+    for (const char* other : {"camera.name", "camera.file"}) {
+      if (over.has(other))
+        throwInput("{}: excludes {}; give one", over.location(name), over.location(other));
+      file.settings.erase(other);
+    }
+    if (file.camera) file.settings.erase("camera.fov"), file.optics.reset();
+    file.camera.reset();
+  }
+}
+
 void mergeCamera(SceneFile& file, const Settings& over) {
+  mergeFraming(file, over);
   const auto path = over.getIfGiven<std::string>("camera.file");
+  if (path || over.has("camera.name"))
+    for (const char* replaced : {"camera.fov", "camera.view", "camera.look_at_node"})
+      file.settings.erase(replaced);
   if (over.has("camera.name")) {
     if (path)
       throwInput("{}: excludes {}; give one", over.location("camera.file"),

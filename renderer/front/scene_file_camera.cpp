@@ -14,6 +14,7 @@ namespace chromeball {
 namespace {
 
 constexpr std::string_view kPlace[] = {"position", "look_at", "up", "fov", "orthographic"};
+constexpr std::string_view kFraming[] = {"view", "look_at_node"};
 
 void refuse(const Section& camera, std::span<const std::string_view> keys, std::string_view owner) {
   for (const std::string_view key : keys)
@@ -52,11 +53,11 @@ void readOptics(const Section& camera, SceneFile& scene) {
 void readPlace(const Section& camera, SceneFile& scene) {
   const Entry position = camera["position"], target = camera["look_at"];
   const Entry orthographic = camera["orthographic"];
-  if (!position && !target && !camera["up"] && !camera["fov"] && !orthographic) return;
+  const Entry upEntry = camera["up"], fovEntry = camera["fov"];
+  if (!position && !target && !upEntry && !orthographic) return;
   if (!position || !target)
     failAt(camera.location(), "[camera] needs `name`, or both `position` and `look_at`");
-
-  const Entry upEntry = camera["up"], fovEntry = camera["fov"];
+  refuse(camera, kFraming, "a `position`");
   if (orthographic && fovEntry)
     failAt(fovEntry.location(), "[camera] is `orthographic`; it has no `fov`");
   const vec3 up = upEntry ? upEntry.vector() : vec3(0, 1, 0);
@@ -88,12 +89,16 @@ void readCamera(const Section& camera, SceneFile& scene) {
   readLens(camera, scene);
   if (const Entry file = camera["file"]) {
     refuse(camera, kPlace, "a `file`");
+    refuse(camera, kFraming, "a `file`");
     refuse(camera, std::array<std::string_view, 3>{"name", "principal_point", "distortion"},
            "a `file`");
     return readCameraFile(existingFile(file), scene);
   }
   readOptics(camera, scene);
-  if (camera["name"]) return refuse(camera, kPlace, "`name`, a camera of the model");
+  if (camera["name"]) {
+    refuse(camera, kFraming, "`name`, a camera of the model");
+    return refuse(camera, kPlace, "`name`, a camera of the model");
+  }
   readPlace(camera, scene);
 }
 
@@ -101,7 +106,8 @@ void readCameraFile(const std::string& path, SceneFile& scene) {
   const toml::table table = parseToml(path);
   const Section root(path, table, {"camera"});
   const Section camera = root.section("camera");
-  for (const char* key : {"file", "name", "shutter", "shutter_steps"})
+  for (const char* key :
+       {"file", "name", "view", "look_at_node", "zoom", "shutter", "shutter_steps"})
     if (const Entry e = camera[key])
       failAt(e.location(), "a camera's own file has `position` and `look_at`, and no `{}`", key);
   if (scene.optics)

@@ -110,10 +110,11 @@ SequenceFrame Sequence::frame(int number) const {
   nameFiles(frame.given, number);
   Settings& s = frame.given;
   s.set("model.time", number / all_.get<double>("fps"), "--frames");
-  if (const auto orbit = all_.getIfGiven<double>("orbit")) {
-    s.set("orbit", *orbit * (number - first_) / (end_ - first_), given_.location("orbit"));
-    if (all_.has("camera.shutter")) s.set("orbit-step", *orbit / (end_ - first_), "--orbit");
-  }
+  for (const char* name : {"orbit", "turntable"})
+    if (const auto turn = all_.getIfGiven<double>(name))
+      s.set(name, *turn * (number - first_) / (end_ - first_), given_.location(name));
+  if (const auto orbit = all_.getIfGiven<double>("orbit"); orbit && all_.has("camera.shutter"))
+    s.set("orbit-step", *orbit / (end_ - first_), "--orbit");
   if (const auto pattern = all_.getIfGiven<std::string>("probe-sequence")) {
     s.set("probe.file", withNumber(*pattern, number), given_.location("probe-sequence"));
     s.erase("probe-sequence");

@@ -17,8 +17,8 @@ struct SequenceFrame {
 };
 
 // The frames that `--frames` names, or the one of them that `--frame` names. Frame k is at k / fps
-// seconds. The camera turns by (k - first) / (last + step - first) of `orbit`, so that a last turn
-// of the same size would close a circle.
+// seconds. The camera turns by (k - first) / (last + step - first) of `orbit`, and the models of
+// `turntable`, so that a last turn of the same size would close a circle.
 class Sequence {
  public:
   // Throws InputError.

@@ -24,8 +24,9 @@ std::vector<Setting> commandRows() {
            .absent = "a plain render",
            .help = "Renders all other nodes, and the shadows and light that they cast on these, as "
                    "an image with alpha to be laid over a photograph, with the layers objects, "
-                   "alpha, difference and ratio of the .exr. `ground`: a level plane at height 0, "
-                   "unless a node is called so. As [composite] with mode = \"shadow-catcher\"."},
+                   "alpha, difference and ratio of the .exr. `ground`: a level plane under the "
+                   "model, unless a node is called so; --ground may give its height. As "
+                   "[composite] with mode = \"shadow-catcher\"."},
           {.option = "two-pass",
            .type = Flag,
            .help = "Renders a composite as the difference of two renders: slow, the reference for "
@@ -50,6 +51,14 @@ std::vector<Setting> commandRows() {
            .help = "Turns the camera around the model, counter-clockwise seen from above. With "
                    "--frames: by equal steps from frame to frame, as many as there are frames, so "
                    "that the last one ends a step before the whole turn."},
+          {.option = "turntable",
+           .argument = "DEGREES",
+           .type = Number,
+           .range = {.min = -36000, .max = 36000},
+           .absent = "no turn",
+           .help = "Turns the models, with their lamps, about the vertical through their centre, "
+                   "counter-clockwise seen from above, under a light and before a camera that "
+                   "stand still, also if they are the models'. With --frames as --orbit."},
           {.option = "orbit-step",
            .argument = "DEGREES",
            .type = Number,

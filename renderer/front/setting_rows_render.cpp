@@ -161,9 +161,23 @@ std::vector<Setting> renderRows() {
                    .fallback = std::to_string(usual.maxTransmissionDepth),
                    .help = "Maximum number of bounces in and on bodies of glass, which are not "
                            "counted as other bounces."},
+                  {.key = "ground",
+                   .argument = "HEIGHT",
+                   .bare = "auto",
+                   .type = NumberOrAuto,
+                   .unit = "metres",
+                   .absent = "none",
+                   .help = "Puts a matte grey plane under the model: at its lowest point, at all "
+                           "times of an animation, or at this height (y). The `ground` of a shadow "
+                           "catcher has the same height."},
+                  {.key = "drop",
+                   .type = Flag,
+                   .help = "Moves the model up or down so that its lowest point, at all times of "
+                           "an animation, is at the height of the ground, or else at 0."},
                   {.key = "single_sided",
                    .type = Choice,
-                   .fallback = "camera",
+                   .absent = "camera; light for a view inside a closed room, or of a body turned "
+                             "inside out, that would be black without",
                    .choices = {"camera", "light", "off"},
                    .help = "Backs of single-sided surfaces are invisible to the camera and mirrors "
                            "(camera), pass all light (light), or are like fronts (off)."},

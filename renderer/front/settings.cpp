@@ -45,7 +45,10 @@ std::span<const SettingSection> settingSections() {
       {"camera", "[camera]", "Camera",
        "A camera of the model by `name`, or one of its own: `position` and `look_at`, and `up`, "
        "`fov` or `orthographic`, here or in a `file`. Without either, the model's first camera "
-       "renders, or one that frames the model. `aperture` and `focus` go together; these, "
+       "renders, or one that frames the model; `view` and `look_at_node` ask for the latter, and "
+       "exclude `name`, `file` and `position`: given as options, they take the place of the scene "
+       "file's camera. `fov` and `zoom` apply to any camera. `aperture` and `focus` go together; "
+       "these, "
        "`principal_point` and `distortion` apply to any perspective camera.",
        cameraRows, true},
       {"probe", "[probe]", "Probe",

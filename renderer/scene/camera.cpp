@@ -148,6 +148,15 @@ Camera Camera::turnedAround(const vec3& centre, double degrees) const {
   return turned;
 }
 
+void ViewAngles::orient(Camera& camera) const {
+  const double a = glm::radians(azimuth), e = glm::radians(elevation), r = glm::radians(roll);
+  const glm::dvec3 back(std::sin(a) * std::cos(e), std::sin(e), std::cos(a) * std::cos(e));
+  const glm::dvec3 level(std::cos(a), 0, -std::sin(a)), above = glm::cross(back, level);
+  camera.back = vec3(back);
+  camera.right = vec3(std::cos(r) * level + std::sin(r) * above);
+  camera.up = vec3(std::cos(r) * above - std::sin(r) * level);
+}
+
 MovingCamera::MovingCamera(const Camera& camera, float aspectRatio)
     : lens_(camera), aspectRatio_(aspectRatio) {
   lens_.name.clear(), lens_.node.clear();  // at() must not allocate

@@ -73,6 +73,14 @@ struct Camera {
   Camera turnedAround(const vec3& centre, double degrees) const;
 };
 
+// The direction from which a camera looks, in degrees: from the front (+Z) counter-clockwise seen
+// from above, and upwards. A positive roll turns the camera counter-clockwise as its user sees it.
+struct ViewAngles {
+  double azimuth = 0, elevation = 0, roll = 0;
+
+  void orient(Camera& camera) const;  // at its position
+};
+
 // The beam around a camera ray. Its cross-section after `distance` metres is
 // area + solidAngle distance^2, in m^2.
 struct Beam {

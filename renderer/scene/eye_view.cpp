@@ -23,7 +23,7 @@ class EyeView {
     std::ranges::sort(sights_, {}, [](const Sight& s) { return s.direction.y; });
   }
 
-  void add(const Corners& corners, bool isDoubleSided) {
+  void add(const Corners& corners, bool isDoubleSided, int instance) {
     const dvec3 a = corners[0] - eye_, b = corners[1] - eye_, c = corners[2] - eye_;
     const dvec3 bc = glm::cross(b, c), ca = glm::cross(c, a), ab = glm::cross(a, b);
     const dvec3 normal = bc + ca + ab;
@@ -39,7 +39,7 @@ class EyeView {
       const double distance = volume / (u + v + w);
       const bool showsBack = !isDoubleSided && u + v + w > 0;
       if (isWithin && distance > 0 && isNearer(distance, showsBack, *s))
-        s->distance = distance, s->normal = glm::normalize(normal), s->showsBack = showsBack;
+        *s = {s->direction, distance, glm::normalize(normal), showsBack, instance};
     }
   }
 
@@ -81,7 +81,7 @@ std::vector<Sight> sightsFrom(const Scene& scene, const std::vector<int>& instan
     const Instance& instance = scene.instances[size_t(i)];
     const bool isDoubleSided = scene.materials[size_t(instance.material)].doubleSided;
     forTriangles(scene, instance, 0, triangleCount(scene, instance),
-                 [&](const Corners& c) { panorama.add(c, isDoubleSided); });
+                 [&](const Corners& c) { panorama.add(c, isDoubleSided, i); });
   }
   return panorama.take();
 }
@@ -94,9 +94,10 @@ using glm::dvec3;
 void addInstance(const Scene& scene, const Instance& instance, const OutsideViews& empty,
                  OutsideViews& views) {
   constexpr size_t kGrain = 1 << 18;
+  const bool isDoubleSided = scene.materials[size_t(instance.material)].doubleSided;
   const auto addTriangles = [&](size_t begin, size_t end, OutsideViews& to) {
     forTriangles(scene, instance, begin, end, [&](const Corners& c) {
-      for (AxisView& view : to) view.add(c);
+      for (AxisView& view : to) view.add(c, isDoubleSided);
     });
   };
   const auto join = [](OutsideViews& to, const OutsideViews& later) {
@@ -111,7 +112,7 @@ void addInstance(const Scene& scene, const Instance& instance, const OutsideView
 
 }  // namespace
 
-void AxisView::add(const Corners& corners) {
+void AxisView::add(const Corners& corners, bool isDoubleSided) {
   const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
   std::array<dvec2, 3> p;  // u, v and the axis are right-handed
   for (size_t k = 0; k < 3; ++k) {
@@ -133,8 +134,8 @@ void AxisView::add(const Corners& corners) {
       const double height =
           a * corners[0][axis_] + b * corners[1][axis_] + (1 - a - b) * corners[2][axis_];
       Cell& nearest = cells_[size_t(y * kCells + x)];
-      if (height > nearest.high) nearest.high = height, nearest.highIsFront = area > 0;
-      if (height < nearest.low) nearest.low = height, nearest.lowIsFront = area < 0;
+      if (height > nearest.high.height) nearest.high = {height, area < 0, isDoubleSided};
+      if (height < nearest.low.height) nearest.low = {height, area > 0, isDoubleSided};
     }
 }
 
@@ -142,17 +143,19 @@ void AxisView::add(const AxisView& later) {
   for (size_t i = 0; i < cells_.size(); ++i) {
     const Cell& other = later.cells_[i];
     Cell& nearest = cells_[i];
-    if (other.high > nearest.high)
-      nearest.high = other.high, nearest.highIsFront = other.highIsFront;
-    if (other.low < nearest.low) nearest.low = other.low, nearest.lowIsFront = other.lowIsFront;
+    if (other.high.height > nearest.high.height) nearest.high = other.high;
+    if (other.low.height < nearest.low.height) nearest.low = other.low;
   }
 }
 
-void AxisView::count(double& backFaces, double& faces) const {
+void AxisView::count(Faces& faces) const {
   for (const Cell& nearest : cells_) {
-    if (nearest.high < nearest.low) continue;
-    faces += 2;
-    backFaces += !nearest.highIsFront + !nearest.lowIsFront;
+    if (nearest.high.height < nearest.low.height) continue;
+    for (const Face& face : {nearest.high, nearest.low}) {
+      ++faces.all;
+      faces.backs += face.isBack;
+      faces.hiddenBacks += face.isBack && !face.isDoubleSided;
+    }
   }
 }
 
@@ -162,7 +165,8 @@ bool AxisView::shows(const dvec3& point, bool fromUpperSide) const {
   const int x = std::clamp(int(at[u]), 0, kCells - 1), y = std::clamp(int(at[v]), 0, kCells - 1);
   const double near = 2 * std::max(1 / cellsPerMetre_[u], 1 / cellsPerMetre_[v]);
   const Cell& nearest = cells_[size_t(y * kCells + x)];
-  return fromUpperSide ? nearest.high <= point[axis_] + near : nearest.low >= point[axis_] - near;
+  return fromUpperSide ? nearest.high.height <= point[axis_] + near
+                       : nearest.low.height >= point[axis_] - near;
 }
 
 OutsideViews outsideViews(const Scene& scene, const std::vector<int>& instances,
@@ -173,11 +177,10 @@ OutsideViews outsideViews(const Scene& scene, const std::vector<int>& instances,
   return views;
 }
 
-bool faceInwards(const OutsideViews& views) {
-  constexpr double kMinFraction = 0.6;
-  double backFaces = 0, faces = 0;
-  for (const AxisView& view : views) view.count(backFaces, faces);
-  return backFaces > kMinFraction * faces;
+AxisView::Faces facesOf(const OutsideViews& views) {
+  AxisView::Faces faces;
+  for (const AxisView& view : views) view.count(faces);
+  return faces;
 }
 
 }  // namespace chromeball

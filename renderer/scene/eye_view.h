@@ -15,6 +15,7 @@ struct Sight {
   double distance = INFINITY;  // of the nearest surface, metres; infinite: none
   glm::dvec3 normal{0};        // unit, of its front
   bool showsBack = false;      // the back of a single-sided surface, which is no wall of a room
+  int instance = -1;           // of the surface: an index into scene.instances
 
   bool isWall() const { return distance < INFINITY && !showsBack; }
 };
@@ -35,21 +36,34 @@ class AxisView {
   AxisView(int axis, const Bounds& box)
       : axis_(axis), origin_(box.min), cellsPerMetre_(double(kCells) / box.size()) {}
 
-  void add(const std::array<glm::dvec3, 3>& triangle);
+  void add(const std::array<glm::dvec3, 3>& triangle, bool isDoubleSided);
   // Adds a view of later triangles; among surfaces at one height the first counts.
   void add(const AxisView& later);
 
-  // Adds the number of back faces and of all faces that are visible from the two sides.
-  void count(double& backFaces, double& faces) const;
+  // The faces that are visible from the two sides.
+  struct Faces {
+    double all = 0, backs = 0, hiddenBacks = 0;  // hidden: of single-sided surfaces
+
+    // Whether they show mostly back faces: walls that face inwards.
+    bool areBacks() const { return backs > kMost * all; }
+    bool hideBacks() const { return hiddenBacks > kMost * all; }
+
+   private:
+    static constexpr double kMost = 0.6;
+  };
+  void count(Faces& faces) const;
 
   // Whether nothing hides the point from the upper (+) or the lower side of the axis, except
   // surfaces so near that they may be its own.
   bool shows(const glm::dvec3& point, bool fromUpperSide) const;
 
  private:
+  struct Face {
+    double height;
+    bool isBack = false, isDoubleSided = false;
+  };
   struct Cell {
-    double high = -INFINITY, low = INFINITY;
-    bool highIsFront = true, lowIsFront = true;
+    Face high{-INFINITY}, low{INFINITY};
   };
   glm::dvec3 toCells(const glm::dvec3& point) const { return (point - origin_) * cellsPerMetre_; }
 
@@ -63,7 +77,6 @@ class AxisView {
 using OutsideViews = std::array<AxisView, 3>;
 OutsideViews outsideViews(const Scene& scene, const std::vector<int>& instances, const Bounds& box);
 
-// Whether the views show mostly back faces: single-sided walls that face inwards.
-bool faceInwards(const OutsideViews& views);
+AxisView::Faces facesOf(const OutsideViews& views);
 
 }  // namespace chromeball

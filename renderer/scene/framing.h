@@ -3,37 +3,71 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "scene/scene.h"
 
 namespace chromeball {
 
-// A camera that frames the scene from the front, slightly above and to the right: as close as
-// possible with all vertices in view and a small margin. `aspectRatio`: width / height. A scene
-// without extent is seen from a fixed distance, a room from inside.
+// What is given of the view; the rest is chosen.
+struct ViewWishes {
+  std::optional<ViewAngles> angles;
+  std::optional<double> fov;        // vertical, radians
+  std::optional<std::string> node;  // to be framed, with its descendants, in place of all
+  bool turns = false;               // around the centre
+};
+
+// A camera that frames a scene from outside, as close as possible with all vertices in view and a
+// small margin, or one that sees a room from inside, unless angles or a node are given, or the
+// camera turns. What is not given suits the shape (scene/choose_view.h).
 //
 // Ground planes are not framed. These are flat instances (at least twenty times as wide as high)
-// that extend beyond the bounds of all other instances by more than the width of those bounds.
-Camera framingCamera(const Scene& scene, float aspectRatio);
+// below all others, beyond whose bounds they extend by more than the width of these.
+class Framing {
+ public:
+  // `aspectRatio`: width / height. A scene without extent is seen from a fixed distance.
+  Framing(const Scene& scene, float aspectRatio, const ViewWishes& wishes = {});
 
-// A camera that sees the scene from the same direction, and can turn around its centre with all
-// vertices in view.
-Camera framingCameraAround(const Scene& scene, float aspectRatio);
+  // The same scene at another time, which shall be in view too.
+  void add(const Scene& later);
 
-// The centre of the bounds that framingCamera() frames; 0 for a scene without triangles.
+  Camera camera() const;
+
+  // Whether a probe lights nothing that the camera sees: all walls are single-sided and face
+  // inwards, so that they block its light.
+  bool isDark() const { return isDark_; }
+
+ private:
+  // The extremes of x + z slope and -x + z slope over all vertices.
+  struct AxisFit {
+    double slope;
+    double upper = -INFINITY, lower = -INFINITY;
+
+    void add(double x, double z);
+    void add(const AxisFit& other);
+    double position() const { return 0.5 * (upper - lower); }
+    double distance() const { return 0.5 * (upper + lower) / slope; }
+  };
+  struct Extent {
+    AxisFit across, upwards;
+    double squaredRadius = 0;  // around the centre
+  };
+
+  ViewWishes wishes_;
+  Camera view_;  // its frame and field of view; inside a room also its place
+  bool isInside_ = false, isDark_ = false;
+  glm::dvec3 centre_{0};
+  double slope_;  // of the view's upper edge, less a margin
+  float aspectRatio_;
+  Extent extent_;
+};
+
+Camera framingCamera(const Scene& scene, float aspectRatio, const ViewWishes& wishes = {});
+
+// The centre of the bounds that are framed; 0 for a scene without triangles.
 vec3 centreOf(const Scene& scene);
 
-// A camera inside the room that the instances form (indices into scene.instances); nullopt if they
-// do not form a room. They do if front faces of walls surround some free position on all sides
-// except for a window or a door, floor and furniture are below it, none of the four sides of the
-// model is open, and one of these holds:
-// - Seen from the six sides of the bounding box, 60% of the nearest surfaces are back faces:
-//   single-sided walls that face inwards.
-// - The bounding box is 2 to 10 metres high and at least 2.5 metres wide, and there are at least
-//   five instances: furniture within walls with two faces. (Size and count exclude cups, whose
-//   walls also surround a free position.)
-// The camera is at 55% of the room's height, at the position and in the direction from which it
-// sees the largest area of a horizontal section through the room. O(triangles).
-std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& instances);
+// The instances of the nodes with this name and of their descendants: indices into scene.instances.
+std::vector<int> instancesBelow(const Scene& scene, const std::string& node);
 
 }  // namespace chromeball

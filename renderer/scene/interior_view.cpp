@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/framing.h"
-
 #include <array>
+#include <set>
 
-#include "scene/eye_view.h"
+#include "scene/choose_view.h"
 #include "scene/placed_triangles.h"
 
 namespace chromeball {
@@ -95,6 +94,7 @@ class Section {
 };
 
 constexpr int kDirections = 32;
+constexpr double kEyeHeight = 0.55;  // as a fraction of the room's height
 
 dvec2 direction(int i) {
   const double angle = 2 * kPiD * i / kDirections;
@@ -139,6 +139,16 @@ double viewArea(const Panorama& seen, int i) {
   return area;
 }
 
+// The middle of the height between floor and ceiling, or the top of the box, where a person's eye
+// would be; the eye's if it stands on nothing.
+double heightWithin(const std::vector<Sight>& sights, const dvec3& eye, const Bounds& box) {
+  const Sight &low = sights.front(), &high = sights.back();  // nearly vertical
+  const double below = -low.direction.y * low.distance, above = high.direction.y * high.distance;
+  if (below == INFINITY) return eye.y;
+  const double top = above < INFINITY ? eye.y + above : double(box.max.y);
+  return glm::mix(eye.y - below, top, kEyeHeight);
+}
+
 // Whether the eye stands on a floor: nearly everything below it is floor, walls and furniture,
 // mostly level or upright. (Nothing is below an eye in the hole of a torus, and nothing is level
 // within a body that is turned inside out.)
@@ -161,13 +171,56 @@ bool contains(const Bounds& box, const dvec3& p) {
          glm::all(glm::lessThanEqual(p, dvec3(box.max)));
 }
 
-// Whether one of the four sides of the model is open: from outside it, most of the space that the
-// eye sees is visible.
-bool hasOpenSide(const std::vector<Sight>& sights, const dvec3& eye, const Bounds& box,
-                 const OutsideViews& views) {
+// Whether most of the area of the walls is level or upright planes of a few directions. (Those of a
+// bottle or of a body that is turned inside out have many.)
+bool hasFlatWalls(const std::vector<Sight>& sights) {
+  constexpr double kLevel = 0.95, kUpright = 0.2, kMinFlat = 0.6, kLeastCosine = 0.1;
+  constexpr size_t kMostPlanes = 6;
+  std::array<double, kDirections> upright{};  // by azimuth
+  double walls = 0, flat = 0;
+  for (const Sight& s : sights) {
+    if (!s.isWall()) continue;
+    const double cosine = std::fabs(glm::dot(s.normal, s.direction));
+    const double area = s.distance * s.distance / std::max(cosine, kLeastCosine);
+    walls += area;
+    const double slope = std::fabs(s.normal.y);
+    if (slope > kLevel) flat += area;
+    const double turn = std::atan2(s.normal.x, s.normal.z) / (2 * kPiD) + 1;
+    if (slope < kUpright) upright[size_t(std::lround(turn * kDirections)) % kDirections] += area;
+  }
+  std::ranges::sort(upright, std::greater());
+  for (size_t i = 0; i < kMostPlanes; ++i) flat += upright[i];
+  return flat > kMinFlat * walls;
+}
+
+// Whether the space that the eye sees is more than a part of the model, such as a trunk.
+bool fills(const std::vector<Sight>& sights, const Bounds& box) {
+  constexpr double kMinFilled = 0.2;
+  double volume = 0;
+  for (const Sight& s : sights)
+    volume += std::pow(std::min(s.distance, glm::length(box.size())), 3);
+  volume *= 4 * kPiD / 3 / double(sights.size());
+  return volume > kMinFilled * box.size().x * box.size().y * box.size().z;
+}
+
+// Whether the eye sees furniture besides the walls.
+bool seesSeveral(const std::vector<Sight>& sights) {
+  constexpr size_t kMinSeen = 2;
+  std::set<int> seen;
+  for (const Sight& s : sights)
+    if (s.isWall()) seen.insert(s.instance);
+  return seen.size() >= kMinSeen;
+}
+
+}  // namespace
+
+std::optional<dvec3> openSides(const std::vector<Sight>& sights, const dvec3& eye,
+                               const Bounds& box, const OutsideViews& outside) {
   constexpr double kMaxShown = 0.5;
   constexpr int kSteps = 16;
   const double whole = glm::length(box.size());
+  const bool isCovered = !outside[1].shows(eye, true);
+  std::optional<dvec3> open;
   for (const int axis : {0, 2})
     for (const bool upper : {false, true}) {
       double space = 0, shown = 0;
@@ -176,30 +229,31 @@ bool hasOpenSide(const std::vector<Sight>& sights, const dvec3& eye, const Bound
           const double distance = (k + 0.5) / kSteps * std::min(s.distance, whole);
           const dvec3 point = eye + distance * s.direction;
           if (!contains(box, point)) break;
+          if (isCovered && outside[1].shows(point, true)) continue;
           const double volume = distance * distance * std::min(s.distance, whole);
           space += volume;
-          if (views[size_t(axis)].shows(point, upper)) shown += volume;
+          if (outside[size_t(axis)].shows(point, upper)) shown += volume;
         }
-      if (shown > kMaxShown * space) return true;
+      if (!(shown > kMaxShown * space)) continue;
+      if (!open) open = dvec3(0);
+      (*open)[axis] += upper ? 1 : -1;
     }
-  return false;
+  return open;
 }
 
-}  // namespace
-
-std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& instances) {
-  constexpr double kEyeHeight = 0.55;  // as a fraction of the room's height
+std::optional<InteriorView> interiorView(const Scene& scene, const std::vector<int>& instances,
+                                         const Bounds& box, const OutsideViews& outside) {
   constexpr double kLeastRoom = 0.02;  // of the footprint; the legs of a table are smaller
   constexpr float kFov = kPi / 3;
-  const Bounds box = bounds(scene, instances);
-  if (!(glm::min(box.size().x, glm::min(box.size().y, box.size().z)) > 0)) return std::nullopt;
-  const OutsideViews outside = outsideViews(scene, instances, box);
-  if (!isFurnishedRoom(box, instances) && !faceInwards(outside)) return std::nullopt;
+  const bool isHollow = facesOf(outside).areBacks();
+  const bool isFurnished = isFurnishedRoom(box, instances);
+  if (!isFurnished && !isHollow) return std::nullopt;
 
   const double height = glm::mix(double(box.min.y), double(box.max.y), kEyeHeight);
   const Section section(scene, instances, box, height);
   const double footprint = double(box.size().x) * double(box.size().z);
   double maxArea = 0;
+  bool isCovered = false;  // the best position
   dvec3 eye(0), target(0);
   for (int z = 0; z < Section::kSide; z += 4)
     for (int x = 0; x < Section::kSide; x += 4) {
@@ -210,18 +264,26 @@ std::optional<Camera> interiorView(const Scene& scene, const std::vector<int>& i
         seen[size_t(i)] = distance ? *distance * *distance : -1;
       }
       if (!isEnclosed(seen) || areaAround(seen) < kLeastRoom * footprint) continue;
+      const dvec2 at = section.point(x, z);
+      const bool hasRoof = !outside[1].shows({at.x, height, at.y}, true);
+      if (isCovered && !hasRoof) continue;
       for (int i = 0; i < kDirections; ++i) {
         const double area = viewArea(seen, i);
-        if (!(area > maxArea)) continue;
-        maxArea = area;
-        const dvec2 at = section.point(x, z), to = at + box.size().y * direction(i);
+        if (!(area > maxArea || (area > 0 && hasRoof && !isCovered))) continue;
+        maxArea = area, isCovered = hasRoof;
+        const dvec2 to = at + box.size().y * direction(i);
         eye = {at.x, height, at.y}, target = {to.x, height - 0.1 * box.size().y, to.y};
       }
     }
   if (maxArea == 0) return std::nullopt;
-  const std::vector<Sight> sights = sightsFrom(scene, instances, eye);
-  if (!standsOnFloor(sights) || hasOpenSide(sights, eye, box, outside)) return std::nullopt;
-  return Camera::lookAt(vec3(eye), vec3(target), vec3(0, 1, 0), kFov);
+  const double rise = heightWithin(sightsFrom(scene, instances, eye), eye, box) - eye.y;
+  eye.y += rise, target.y += rise;
+  std::vector<Sight> sights = sightsFrom(scene, instances, eye);
+  if (!standsOnFloor(sights) || openSides(sights, eye, box, outside)) return std::nullopt;
+  const bool isBare = isHollow && hasFlatWalls(sights) && fills(sights, box);
+  if (!isBare && !(isFurnished && seesSeveral(sights))) return std::nullopt;
+  return InteriorView{Camera::lookAt(vec3(eye), vec3(target), vec3(0, 1, 0), kFov),
+                      std::move(sights)};
 }
 
 }  // namespace chromeball

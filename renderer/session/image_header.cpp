@@ -24,12 +24,20 @@ using Json = nlohmann::ordered_json;
 // Contents of files are compared instead.
 constexpr std::array kPaths = {"scene", "probe", "camera-file", "files"};
 constexpr std::array kLimits = {"noise-limit", "time-limit"};
-constexpr std::array kOfImage = {"camera",       "cameraPosition", "cameraFov",     "lensRadius",
-                                 "focus",        "distortion",     "worldToCamera", "worldToNDC",
-                                 "size",         "crop",           "shard",         "orbit",
-                                 "seed",         "clamp",          "transparent",   "denoise",
-                                 "adaptive",     "ao-distance",    "bent",          "aov",
-                                 "scene-camera", "lens",           "optics"};
+constexpr std::array kOfImage = {"camera",        "cameraPosition",
+                                 "cameraFov",     "lensRadius",
+                                 "focus",         "distortion",
+                                 "worldToCamera", "worldToNDC",
+                                 "size",          "crop",
+                                 "shard",         "orbit",
+                                 "seed",          "clamp",
+                                 "transparent",   "denoise",
+                                 "adaptive",      "ao-distance",
+                                 "bent",          "aov",
+                                 "scene-camera",  "lens",
+                                 "optics",        "view",
+                                 "look-at",       "fov",
+                                 "zoom"};
 constexpr std::array kVariedByComparisons = {"strategy", "adaptive", "guide"};
 
 // The matrix for row vectors: each row is the transformed unit vector of an axis, the last row the

@@ -62,6 +62,15 @@ SceneContents contentsOf(const LoadedScene& loaded) {
                    (description.camera.shutter && description.camera.shutter->turn != 0)};
 }
 
+void addSides(const RenderDescription& description, Messages& messages) {
+  if (!description.choosesSides || description.singleSided != SingleSided::Light) return;
+  messages.push_back({Message::Kind::Note,
+                      fmt::format("{}: the probe's light passes the backs of its single-sided "
+                                  "walls, since the picture would be black without",
+                                  description.sceneName()),
+                      Remedy{"render.single_sided", "camera"}});
+}
+
 void addMemory(const LoadedScene& loaded, Messages& messages) {
   const RenderDescription& description = loaded.description;
   constexpr double kMinBytes = 1e9;
@@ -172,6 +181,7 @@ Messages loadMessages(const LoadedScene& loaded) {
     addProbe(*probe, loaded.loadedProbe, messages);
   else if (!description.probe.map)
     addLights(description, scene, messages);
+  addSides(description, messages);
   addGuide(description, messages);
   addSources(loaded, messages);
   if (const auto& scale = loaded.plateScale)

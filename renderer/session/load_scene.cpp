@@ -189,13 +189,15 @@ FrameChange loadFrame(const RenderDescription& given, LoadedScene& loaded, Model
   assert(!given.composite);
   RenderDescription description = given;
   FrameChange change;
-  if (loaded.scene.isAnimated) {
+  if (loaded.scene.isAnimated ||
+      description.stand.turntable != loaded.description.stand.turntable) {
     replaceProbe(description, loaded, change);
     replaceModels(description, loaded, cache, change);
   } else {
     const Camera camera = placeCamera(description, loaded.scene, loaded.view, loaded.origin);
     replaceProbe(description, loaded, change);
     loaded.camera = camera;
+    if (description.choosesSides) description.singleSided = loaded.description.singleSided;
   }
   loaded.description = std::move(description);
   checkMemory(loaded);

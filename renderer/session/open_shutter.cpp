@@ -2,28 +2,28 @@
 #include "session/open_shutter.h"
 
 #include <algorithm>
-#include <set>
 
 #include "animation/scene_motion.h"
 #include "base/error.h"
-#include "scene/gltf/load_gltf.h"
-#include "scene/gltf/model_cache.h"
+#include "session/animation_times.h"
 #include "session/memory_estimate.h"
+#include "session/stand_models.h"
 
 namespace chromeball {
 namespace {
 
 constexpr double kMovingVertex = 80;  // bytes of a key: attributes, and Embree's copy
+constexpr size_t kMostChanges = 64;
 
 // The models at a fraction of the shutter's time.
-Scene modelsAt(const RenderDescription& description, double fraction, const glm::dvec3& origin,
+Scene modelsAt(const RenderDescription& description, double fraction, const PlacedModels& placed,
                ModelCache& cache) {
-  std::vector<ModelEntry> later = description.models;
+  std::vector<ModelEntry> later = standing(description, description.models, placed.view);
   for (ModelEntry& model : later)
     if (model.choice.animation)
       model.choice.animation->seconds += fraction * description.camera.shutter->seconds();
   std::vector<std::string> known;
-  return loadModels(description, later, origin, cache, known);
+  return loadModels(description, later, placed.origin, cache, known);
 }
 
 bool isSameView(const Camera& a, const Camera& b) {
@@ -46,25 +46,6 @@ void checkMotionMemory(const RenderDescription& description, const Scene& scene)
   checkMemory(description, needed, "{}: {} steps of what moves take {:.3g} GB of memory",
               description.origins.of("camera.shutter"), description.camera.shutter->steps,
               1e-9 * needed);
-}
-
-// Fractions of the shutter's time at which animations have moved, between which and the keys they
-// may come back; of many, some.
-std::vector<double> fractionsOfChange(const RenderDescription& description, ModelCache& cache) {
-  constexpr size_t kMost = 64;
-  const double seconds = description.camera.shutter->seconds();
-  std::set<double> all;
-  for (const ModelEntry& model : description.models) {
-    GltfChoice choice = model.choice;
-    choice.cache = &cache;
-    for (const double change : animationChanges(model.file, choice, seconds))
-      all.insert(change / seconds);
-  }
-  std::vector<double> some;
-  size_t i = 0;
-  for (const double fraction : all)
-    if (i++ * kMost / std::max(all.size(), kMost) >= some.size()) some.push_back(fraction);
-  return some;
 }
 
 std::string modelOf(const RenderDescription& description) { return description.sceneName(); }
@@ -93,7 +74,7 @@ void openShutter(const RenderDescription& description, PlacedModels& placed, Mod
   std::vector<Camera> cameras(2 * size_t(steps) + 1, placed.camera);  // at half steps
   const auto modelsAtHalfStep = [&](int i) {
     const double fraction = double(i) / (2 * steps);
-    Scene scene = modelsAt(description, fraction, placed.origin, cache);
+    Scene scene = modelsAt(description, fraction, placed, cache);
     cameras[size_t(i)] = cameraOf(description, scene, placed.view, placed.origin,
                                   fraction * description.camera.shutter->turn);
     return scene;
@@ -110,9 +91,12 @@ void openShutter(const RenderDescription& description, PlacedModels& placed, Mod
   MotionError error;
   for (int k = 0; k < steps; ++k)
     error.add(placed.scene, modelsAtHalfStep(2 * k + 1), float((k + 0.5) / steps));
-  const std::vector<double> changes = fractionsOfChange(description, cache);
-  for (const double fraction : changes)
-    error.add(placed.scene, modelsAt(description, fraction, placed.origin, cache), float(fraction));
+  const double open = description.camera.shutter->seconds();
+  const std::vector<double> changes =  // between which and the keys models may come back
+      timesOfChange(description.models, open, kMostChanges, cache);
+  for (const double seconds : changes)
+    error.add(placed.scene, modelsAt(description, seconds / open, placed, cache),
+              float(seconds / open));
   placed.moves = placed.scene.moves || !changes.empty();
   moveCamera(*description.camera.shutter, cameras, placed.camera, error);
   warn(error.warnings(modelOf(description), steps));

@@ -13,9 +13,11 @@
 #include "scene/extended_surface.h"
 #include "scene/framing.h"
 #include "scene/gltf/load_gltf.h"
+#include "session/animation_times.h"
 #include "session/memory_estimate.h"
 #include "session/open_shutter.h"
 #include "session/scene_lighting.h"
+#include "session/stand_models.h"
 
 namespace chromeball {
 namespace {
@@ -38,8 +40,19 @@ Camera chooseWithoutLens(const RenderDescription& description, const Scene& scen
     throwInput("{}: the model has no camera `{}`; {}", description.origins.of("camera.name"),
                *wanted, names.empty() ? "it has none" : didYouMean(*wanted, names));
   }
-  if (!scene.cameras.empty()) return scene.cameras.front();
+  if (!scene.cameras.empty() && !description.camera.frames()) return scene.cameras.front();
   return *view.camera;
+}
+
+Camera withFieldOfView(const CameraDescription& given, const Origins& origins, Camera camera) {
+  if (given.fov && camera.orthographic)
+    throwInput("{}: an orthographic camera has no field of view; enlarge what it shows",
+               origins.of("camera.fov"));
+  if (given.fov) camera.fov = glm::radians(float(*given.fov));
+  if (given.zoom == 1) return camera;
+  camera.halfHeight = float(camera.halfHeight / given.zoom);
+  camera.fov = float(2 * std::atan(std::tan(0.5 * double(camera.fov)) / given.zoom));
+  return camera;
 }
 
 Camera withLens(const RenderDescription& description, Camera camera) {
@@ -65,25 +78,12 @@ Camera withOptics(const RenderDescription& description, Camera camera) {
   return camera;
 }
 
-// The description's size must be final.
-AutomaticView automaticView(const RenderDescription& description, const Scene& scene,
-                            const glm::dvec3& origin) {
-  const RenderSettings& s = description.settings;
-  const float aspect = float(s.width) / float(s.height);
-  const bool turns = description.camera.turns;
-  const bool isPlaced = description.camera.placed || description.camera.name;
-  AutomaticView view{.origin = origin};
-  if (turns) view.centre = centreOf(scene);
-  if (!isPlaced && scene.cameras.empty())
-    view.camera = turns ? framingCameraAround(scene, aspect) : framingCamera(scene, aspect);
-  return view;
-}
-
 // The camera before its `orbit`.
 Camera chooseCamera(const RenderDescription& description, const Scene& scene,
                     const AutomaticView& view) {
-  return withOptics(description,
-                    withLens(description, chooseWithoutLens(description, scene, view)));
+  const Camera camera = withFieldOfView(description.camera, description.origins,
+                                        chooseWithoutLens(description, scene, view));
+  return withOptics(description, withLens(description, camera));
 }
 
 // Throws InputError if the scene reaches too far from the origin.
@@ -112,7 +112,7 @@ void chooseSize(RenderDescription& description, const Scene& scene) {
   if (description.size) {
     settings.width = description.size->width;
     settings.height = description.size->height;
-  } else if (!description.camera.placed && !scene.cameras.empty()) {
+  } else if (!description.camera.placed && !description.camera.frames() && !scene.cameras.empty()) {
     const float aspect = chooseCamera(description, scene, {}).aspect;
     if (aspect > 0.05f && aspect < 20)
       settings.width = std::max(1, int(std::lround(aspect * float(settings.height))));
@@ -141,16 +141,71 @@ PlacedModels modelsAtOrigin(const RenderDescription& description,
   return placed;
 }
 
-// The view of time 0, also in the coordinates of that time: with the same rounding for all times.
-AutomaticView viewAtStart(const RenderDescription& description, const PlacedModels& now,
-                          ModelCache& cache) {
-  const AutomaticView view = automaticView(description, now.scene, now.origin);
-  if (!now.scene.isAnimated || !(view.camera || description.camera.turns)) return view;
-  std::vector<ModelEntry> start = description.models;
-  for (ModelEntry& model : start)
-    if (model.choice.animation) model.choice.animation->seconds = 0;
-  const PlacedModels first = modelsAtOrigin(description, start, cache);
-  return automaticView(description, first.scene, first.origin);
+bool needsFraming(const RenderDescription& description, const Scene& scene) {
+  const CameraDescription& camera = description.camera;
+  return !camera.placed && !camera.name && (scene.cameras.empty() || camera.frames());
+}
+
+void checkNode(const RenderDescription& description, const Scene& scene) {
+  const auto& node = description.camera.node;
+  if (!node || !instancesBelow(scene, *node).empty()) return;
+  const std::string location = description.origins.of("camera.look_at_node");
+  const std::vector<std::string_view> names(scene.nodeNames.begin(), scene.nodeNames.end());
+  if (std::ranges::find(names, *node) != names.end())
+    throwInput("{}: node `{}` has no surface to be looked at", location, *node);
+  throwInput("{}: the model has no node `{}`; {}", location, *node, didYouMean(*node, names));
+}
+
+// The view of all times, begun with that of time 0 in the coordinates of that time: with the same
+// rounding for all times. The description's size must be final.
+AutomaticView findView(const RenderDescription& description, const PlacedModels& now,
+                       ModelCache& cache) {
+  constexpr size_t kMostTimes = 24;
+  const bool frames = needsFraming(description, now.scene);
+  if (!frames && !description.camera.turns && !needsStand(description))
+    return {.origin = now.origin};
+  std::optional<PlacedModels> start;
+  if (now.scene.isAnimated)
+    start = modelsAtOrigin(description, modelsAt(description.models, 0), cache);
+  const PlacedModels& first = start ? *start : now;
+  AutomaticView view{.origin = first.origin};
+  view.centre = centreOf(first.scene);
+  view.axis = glm::dvec3(view.centre) + view.origin;
+  double lowest = bounds(first.scene).min.y;
+  std::optional<Framing> framing;
+  if (frames) {
+    checkNode(description, first.scene);
+    const RenderSettings& s = description.settings;
+    const CameraDescription& c = description.camera;
+    const auto fov = c.fov ? std::optional(glm::radians(*c.fov)) : std::nullopt;
+    framing.emplace(first.scene, float(s.width) / float(s.height),
+                    ViewWishes{c.view, fov, c.node, c.turns || description.stand.turntable});
+  }
+  std::vector<double> times;
+  if (start) times = timesOfChange(modelsAt(description.models, 0), INFINITY, kMostTimes, cache);
+  std::vector<std::string> known;
+  for (const double seconds : times) {
+    const Scene later =
+        loadModels(description, modelsAt(description.models, seconds), first.origin, cache, known);
+    if (framing) framing->add(later);
+    lowest = std::min(lowest, double(bounds(later).min.y));
+  }
+  if (std::isfinite(lowest)) view.lowest = lowest + view.origin.y;
+  if (framing) view.camera = framing->camera(), view.isDark = framing->isDark();
+  const float drop = float(dropOf(description, view.lowest));
+  view.centre.y += drop;
+  if (view.camera) view.camera->position.y += drop;
+  if (!description.camera.turns) view.centre = vec3(0);
+  return view;
+}
+
+// Lets the probe's light through the backs of walls that face inwards, if nothing else lights the
+// models.
+void chooseSides(RenderDescription& description, const AutomaticView& view, const Scene& scene) {
+  const auto emits = [&](const Instance& i) { return scene.materials[size_t(i.material)].emits(); };
+  const bool isLit = !scene.lights.empty() || std::ranges::any_of(scene.instances, emits);
+  if (view.isDark && !isLit && description.run.makesImage)
+    description.singleSided = SingleSided::Light;
 }
 
 }  // namespace
@@ -210,13 +265,22 @@ PlacedModels placeModels(RenderDescription& description, ModelCache& cache,
     throwInput("{}: the model has no triangles to render", description.sceneName());
   Scene& scene = placed.scene;
   chooseSize(description, scene);
-  placed.view = view ? *view : viewAtStart(description, placed, cache);
+  placed.view = view ? *view : findView(description, placed, cache);
+  if (description.stand.movesModels()) {
+    const AutomaticView found = placed.view;
+    placed = modelsAtOrigin(description, standing(description, description.models, found), cache);
+    placed.view = found;
+    turnBackCameras(description, found, placed.origin, scene);
+  }
   placed.camera = cameraOf(description, scene, placed.view, placed.origin);
   if (description.camera.shutter) openShutter(description, placed, cache);
+  addGround(description, placed.view, placed.origin, scene);
   placed.hasLights = !scene.lights.empty();
   if (description.lighting.lamps == 0) scene.lights.clear();
   for (const Lamp& lamp : description.lamps) addLamp(scene, lamp, placed.origin);
   removeLamps(description, scene);
+  if (description.choosesSides && description.singleSided == SingleSided::Camera)
+    chooseSides(description, placed.view, scene);
   for (Material& material : scene.materials) material.singleSided = description.singleSided;
   if (description.straightGlassShadows) passShadowsStraight(scene.materials);
   return placed;

@@ -11,12 +11,16 @@
 
 namespace chromeball {
 
-// The parts of a view that depend on the models' bounds, at time 0 of an animation, so that they
-// are the same at all times.
+// The parts of a view that depend on the models' bounds, at all times of an animation, so that they
+// are the same for each of its frames.
 struct AutomaticView {
   std::optional<Camera> camera;  // if nobody has placed one
+  bool isDark = false;           // Framing::isDark, of that camera
   vec3 centre{0};                // of the camera's turn; 0 without one
   glm::dvec3 origin{0};          // the world position of these coordinates' origin, metres
+  // In the world, where the models' own placements put them; 0 if they are not needed.
+  double lowest = 0;
+  glm::dvec3 axis{0};  // a point of the turntable's, the models' centre at time 0
 
   AutomaticView seenFrom(const glm::dvec3& other) const;  // with another origin
 };

@@ -68,9 +68,17 @@ constexpr std::string_view kOfVertices[] = {
     "samples",        "seed",           "max-depth", "glass-shadows", "single-sided", "light-units",
     "animation",      "animation-time", "variant",   "camera",        "memory",       "threads",
     "texture-memory", "allow-external", "progress",  "quiet"};
-constexpr std::string_view kOfPixels[] = {
-    "size", "max-diffuse-depth", "max-specular-depth", "max-transmission-depth",
-    "mis",  "transparent",       "camera-file"};
+constexpr std::string_view kOfPixels[] = {"size",
+                                          "max-diffuse-depth",
+                                          "max-specular-depth",
+                                          "max-transmission-depth",
+                                          "mis",
+                                          "transparent",
+                                          "camera-file",
+                                          "view",
+                                          "fov",
+                                          "zoom",
+                                          "look-at"};
 
 // What the brief help shows.
 constexpr auto kCommon = std::to_array<const char*>(
@@ -91,12 +99,14 @@ std::string_view separatorOf(const Setting& setting) {
 using Names = std::span<const std::string_view>;
 
 // Keys that a command heeds although it does not have their options.
-constexpr std::string_view kKeysOfBake[] = {"render.size",         "camera.file",
-                                            "lighting.lights",     "lighting.mis",
-                                            "render.single_sided", "render.glass_shadows"};
+constexpr std::string_view kKeysOfBake[] = {
+    "render.size",         "camera.file",         "camera.view",     "camera.look_at_node",
+    "camera.fov",          "camera.zoom",         "lighting.lights", "lighting.mis",
+    "render.single_sided", "render.glass_shadows"};
 constexpr std::string_view kKeysOfBasis[] = {"lighting.lights", "lighting.from"};
-constexpr std::string_view kKeysOfBasisVertices[] = {"render.size", "camera.file",
-                                                     "lighting.lights", "lighting.from"};
+constexpr std::string_view kKeysOfBasisVertices[] = {
+    "render.size", "camera.file", "camera.view",     "camera.look_at_node",
+    "camera.fov",  "camera.zoom", "lighting.lights", "lighting.from"};
 // Keys that the command takes out itself where it heeds them.
 constexpr std::string_view kTakenByBake[] = {"render.ao_distance"};
 // The radiance is baked as it is, not as a camera would show it.

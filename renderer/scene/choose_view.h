@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The view that suits the shape of a scene.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "scene/bounds.h"
+#include "scene/camera.h"
+#include "scene/eye_view.h"
+#include "scene/scene.h"
+
+namespace chromeball {
+
+struct ChosenView {
+  std::optional<Camera> inside;  // a room
+  ViewAngles outside;
+  bool isDark = false;  // Framing::isDark
+};
+
+// Of the instances (indices into scene.instances). From outside, the view is from the front,
+// slightly above and to the right, but for
+// - what lies in a plane, with its fronts on one side, or is thin and upright, such as a chart: it
+//   is seen from its front;
+// - what is flat and level: it is seen from higher above;
+// - a box with one to three open sides, which is seen through these;
+// - what is longer from front to back than one and a half times its width: it is seen from its
+//   right side, towards its front.
+// O(triangles).
+ChosenView chooseView(const Scene& scene, const std::vector<int>& instances);
+
+// A camera inside the room that the instances form; nullopt if they do not form a room. They do if
+// front faces of walls surround some free position on all sides except for a window or a door,
+// floor and furniture are below it, none of the four sides of the model is open, and one of these
+// holds:
+// - Seen from the six sides of the bounding box, 60% of the nearest surfaces are back faces: walls
+//   that face inwards; the walls that are seen from the position are mostly planes of a few
+//   directions, around a fifth or more of the box. (A body turned inside out has no such walls.)
+// - The bounding box is 2 to 10 metres high and at least 2.5 metres wide, there are at least five
+//   instances, and two are seen from the position: furniture within walls with two faces. (Size
+//   and counts exclude cups and rows of them, whose walls also surround a free position.)
+// The camera is at 55% of the height from floor to ceiling, at the position and in the direction
+// from which it sees the largest area of a horizontal section through the room; under a roof, if
+// there is one somewhere.
+struct InteriorView {
+  Camera camera;
+  std::vector<Sight> sights;  // from its position
+};
+std::optional<InteriorView> interiorView(const Scene& scene, const std::vector<int>& instances,
+                                         const Bounds& box, const OutsideViews& outside);
+
+// The horizontal directions to the open sides of the model, through which most of the space that
+// the eye sees, under a roof if it is under one, is visible from outside: their sum; empty if there
+// are none.
+std::optional<glm::dvec3> openSides(const std::vector<Sight>& sights, const glm::dvec3& eye,
+                                    const Bounds& box, const OutsideViews& outside);
+
+}  // namespace chromeball
