@@ -112,7 +112,7 @@ struct OutputDescription {
 };
 
 struct RenderDescription : SceneParts {
-  // From memory (scene/builder), in place of models; null: none.
+  // From memory (scene/builder), in place of models or together with them; null: none.
   std::shared_ptr<const Scene> scene;
   CameraDescription camera;
   ProbeDescription probe;

@@ -146,9 +146,8 @@ Section::Section(const std::string& file, const toml::table& table,
 void Section::checkKeys(const std::vector<std::string_view>& known) const {
   for (const auto& [key, node] : table_)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      failAt(fmt::format("{}:{}", file_, key.source().begin.line), "unknown key `{}`{}; {}",
-             printableName(key.str()), name_.empty() ? "" : " in " + heading(),
-             didYouMean(key.str(), known));
+      failAt(locationIn(file_, key), "unknown key `{}`{}; {}", printableName(key.str()),
+             name_.empty() ? "" : " in " + heading(), didYouMean(key.str(), known));
 }
 
 Entry Section::required(std::string_view key) const {
@@ -176,8 +175,8 @@ Section Section::section(std::string_view key) const {
 void Section::allowOnly(const std::vector<std::string_view>& keys, std::string_view owner) const {
   for (const auto& [key, node] : table_)
     if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
-      failAt(fmt::format("{}:{}", file_, key.source().begin.line), "{} has no `{}`; it has {}",
-             owner, printableName(key.str()), fmt::join(keys, ", "));
+      failAt(locationIn(file_, key), "{} has no `{}`; it has {}", owner, printableName(key.str()),
+             fmt::join(keys, ", "));
 }
 
 void Section::read(Settings& settings) const {
