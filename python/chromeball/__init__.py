@@ -14,9 +14,10 @@ import atexit as _atexit
 
 from . import _core
 from ._camera import Camera
-from ._core import InputError, RunError, __version__
+from ._core import version as __version__
+from ._errors import InputError, RenderWarning, RunError
 from ._probe import Lights, Probe
-from ._render import RenderWarning, Session, keywords, render
+from ._render import Session, keywords, render
 from ._result import Result
 from ._scene import Material, Scene, load
 

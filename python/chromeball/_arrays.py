@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ._core import InputError
+from ._errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -53,7 +53,8 @@ def directions(name: str, value: Any) -> NDArray[Any]:
     wrong = np.flatnonzero(~(np.isfinite(length) & (length > 0)))
     if wrong.size:
         raise InputError(f"{name}[{wrong[0]}]: {vectors[wrong[0]].tolist()} has no direction")
-    return (vectors / length[:, None]).astype(np.float32)
+    units: NDArray[np.float32] = (vectors / length[:, None]).astype(np.float32)
+    return units
 
 
 def texels(name: str, value: Any) -> NDArray[Any]:

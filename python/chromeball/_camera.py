@@ -7,7 +7,8 @@ import math
 from typing import Any, Sequence
 
 from . import _arrays
-from ._core import InputError, check_camera
+from ._core import check_camera
+from ._errors import InputError
 
 
 class Camera:

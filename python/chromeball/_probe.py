@@ -8,8 +8,8 @@ import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple, Sequence
 
 from . import _arrays
-from ._core import InputError, ProbeMap
-from ._warnings import RenderWarning
+from ._core import ProbeMap
+from ._errors import InputError, RenderWarning
 
 if TYPE_CHECKING:
     import numpy as np
@@ -52,7 +52,10 @@ class Probe:
         if isinstance(source, (str, os.PathLike)):
             self._map = ProbeMap.read(os.fspath(source), mapping)
         else:
-            self._map = ProbeMap.of_array(_arrays.array("Probe()", source, ("H", "W", 3), "float32"), mapping)
+            texels = _arrays.array("Probe()", source, ("H", "W", 3), "float32")
+            if texels.size == 0:
+                raise InputError("Probe(): the array has no texels")
+            self._map = ProbeMap.of_array(texels, mapping)
         for kind, text in self._map.messages:
             if kind == "warning":
                 warnings.warn(text, RenderWarning, stacklevel=2)

@@ -9,13 +9,11 @@ from typing import Any, Callable, Union
 
 from . import _core
 from ._camera import Camera
-from ._core import InputError, Plan
+from ._core import Plan
+from ._errors import InputError
 from ._probe import Probe
 from ._result import Result, result_of
 from ._scene import Scene
-from ._warnings import RenderWarning
-
-__all__ = ["RenderWarning", "Session", "keywords", "render"]
 
 SceneLike = Union[Scene, str, "os.PathLike[str]", dict[str, Any]]
 ProbeLike = Union[Probe, str, "os.PathLike[str]", None]
@@ -30,8 +28,6 @@ def keywords(name: str | None = None) -> Any:
 
 def _plan(caller: str, scene: SceneLike, probe: ProbeLike, camera: Camera | None, settings: dict[str, Any]) -> Plan:
     settings = {key: value for key, value in settings.items() if value is not None}
-    if "layers" in settings:
-        settings["aovs"] = settings.pop("layers")
     if probe is not None and not isinstance(probe, Probe):
         if not isinstance(probe, (str, os.PathLike)):
             raise InputError(f"{caller}: probe is a {type(probe).__name__}; it should be a chromeball.Probe, or a file")

@@ -9,7 +9,7 @@ import warnings
 from typing import TYPE_CHECKING, Any
 
 from ._core import Image
-from ._warnings import RenderWarning
+from ._errors import RenderWarning
 
 if TYPE_CHECKING:
     import numpy as np

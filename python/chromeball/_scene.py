@@ -7,7 +7,8 @@ import os
 from typing import Any
 
 from . import _arrays
-from ._core import Geometry, InputError, Session, check_scene
+from ._core import Geometry, Session, check_scene
+from ._errors import InputError
 
 _TEXTURES = ("base_color_texture", "metallic_roughness_texture", "normal_texture", "emission_texture")
 

@@ -29,17 +29,14 @@ void translate(const std::exception_ptr& error, void* payload) {
 }  // namespace
 
 void bindErrors(nb::module_& m) {
-  static Types types;  // as long as the process
-  types.input = PyErr_NewExceptionWithDoc(
-      "chromeball.InputError", "What was given is wrong; the message says what would be right.",
-      PyExc_ValueError, nullptr);
-  types.run = PyErr_NewExceptionWithDoc("chromeball.RunError",
-                                        "Something failed while it ran, such as a full disk, or "
-                                        "was cancelled before it had rendered.",
-                                        PyExc_RuntimeError, nullptr);
-  m.attr("InputError") = nb::handle(types.input);
-  m.attr("RunError") = nb::handle(types.run);
+  static Types types = {PyExc_ValueError, PyExc_RuntimeError};  // as long as the process
   nb::register_exception_translator(translate, &types);
+  m.def(
+      "set_errors",
+      [](nb::type_object input, nb::type_object run) {
+        types = {input.release().ptr(), run.release().ptr()};
+      },
+      nb::arg("input"), nb::arg("run"), "The classes of errors of input, and at run time.");
 }
 
 }  // namespace chromeball::python

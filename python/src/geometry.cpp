@@ -31,7 +31,7 @@ SceneBuilder& Geometry::builder() {
   return *builder_;
 }
 
-int Geometry::addMaterial(const nb::dict& keywords) {
+int Geometry::addMaterial(const Dict& keywords) {
   Scene attempt;  // so that an error leaves no textures behind
   SceneBuilder trial(attempt);
   trial.addMaterial(materialOf(keywords, trial));

@@ -11,13 +11,14 @@
 
 #include "arrays.h"
 #include "scene/builder/scene_builder.h"
+#include "values.h"
 
 namespace chromeball::python {
 
 // A scene that grows. Renders share it: it is copied, without its meshes, before it grows further.
 class Geometry {
  public:
-  int addMaterial(const nb::dict& keywords);
+  int addMaterial(const Dict& keywords);
   int addMesh(const ArrayIn<float>& positions, const std::optional<ArrayIn<uint32_t>>& triangles,
               const std::optional<ArrayIn<float>>& normals,
               const std::optional<ArrayIn<float>>& uvs, const std::optional<ArrayIn<float>>& colors,

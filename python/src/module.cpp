@@ -5,7 +5,7 @@ NB_MODULE(_core, m) {
   using namespace chromeball::python;
   m.doc() =
       "The renderer's library. Use the package chromeball, which checks arrays and arguments.";
-  m.attr("__version__") = CHROMEBALL_VERSION;
+  m.attr("version") = CHROMEBALL_VERSION;
   bindErrors(m);
   bindGeometry(m);
   bindProbe(m);

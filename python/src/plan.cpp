@@ -6,6 +6,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "base/text.h"
 #include "bindings.h"
 #include "front/plan_render.h"
 #include "front/scene_values.h"
@@ -31,8 +32,7 @@ void keepToMemory(RenderDescription& description) {
 }
 
 Plan planOf(nb::handle scene, const Geometry* geometry, const ProbeMap* probe,
-            const std::optional<nb::dict>& camera, const nb::dict& keywords,
-            const std::string& caller) {
+            const std::optional<Dict>& camera, const Dict& keywords, const std::string& caller) {
   SceneFile file = sceneOf(scene);
   if (camera) replaceCamera(file, tableOf(*camera, "Camera()"), "Camera()");
   Settings settings = keywordSettings(tableOf(keywords, caller), caller);
@@ -57,11 +57,11 @@ Plan planOf(nb::handle scene, const Geometry* geometry, const ProbeMap* probe,
   return plan;
 }
 
-void checkScene(const nb::dict& scene, const std::string& name) {
+void checkScene(const Dict& scene, const std::string& name) {
   chromeball::sceneOf(tableOf(scene, name), name);
 }
 
-void checkCamera(const nb::dict& camera, const std::string& name) {
+void checkCamera(const Dict& camera, const std::string& name) {
   SceneFile scene;
   replaceCamera(scene, tableOf(camera, name), name);
 }
@@ -73,10 +73,11 @@ std::vector<std::string> keywordNames() {
 }
 
 std::string helpOf(const std::string& keyword) {
-  for (const Setting& setting : settingTable())
-    if (keywordOf(setting.name()) == keyword)
-      return fmt::format("{} [{}]", setting.help, expected(setting));
-  return "";
+  const Setting* setting = findKeyword(keyword);
+  if (!setting)
+    throwInput("keywords(): unknown keyword `{}`; {}", printableName(keyword),
+               didYouMean(keyword, keywords()));
+  return fmt::format("{} Valid: {}.", setting->help, expected(*setting));
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ const Result& resultOf(nb::handle self) { return *nb::inst_ptr<Result>(self); }
 
 View color(nb::handle self) { return viewOf(resultOf(self).image->color(), self); }
 
-nb::dict layers(nb::handle self) {
-  nb::dict all;
+nb::typed<nb::dict, nb::str, View> layers(nb::handle self) {
+  nb::typed<nb::dict, nb::str, View> all;
   const std::vector<Layer>& found = resultOf(self).image->image.layers;
   for (size_t i = 1; i < found.size(); ++i) {
     const View view = viewOf(found[i].image, self);
@@ -35,8 +35,8 @@ nb::dict layers(nb::handle self) {
   return all;
 }
 
-nb::dict metadata(const Result& result) {
-  nb::dict all;
+Dict metadata(const Result& result) {
+  Dict all;
   for (const auto& [name, value] : result.image->image.metadata)
     std::visit(
         [&, key = name.c_str()](const auto& v) {
@@ -61,8 +61,7 @@ Image coverageOf(const OutputImage& image) {
 }
 
 // The display of a .png: the render's, with those of its settings that are given again.
-OutputDescription shownAs(const Result& result, const nb::dict& keywords,
-                          const std::string& caller) {
+OutputDescription shownAs(const Result& result, const Dict& keywords, const std::string& caller) {
   OutputDescription output = result.output;
   const Settings given = keywordSettings(tableOf(keywords, caller), caller);
   const PlannedDisplay display = planDisplay(given);
@@ -79,7 +78,7 @@ OutputDescription shownAs(const Result& result, const nb::dict& keywords,
 }
 
 std::vector<std::pair<std::string, std::string>> save(const Result& result, const std::string& path,
-                                                      const nb::dict& keywords) {
+                                                      const Dict& keywords) {
   RenderDescription shown;
   shown.output = shownAs(result, keywords, "save()");
   shown.output.files = {path};
@@ -92,7 +91,7 @@ std::vector<std::pair<std::string, std::string>> save(const Result& result, cons
   return pairsOf(messages);
 }
 
-nb::bytes png(const Result& result, const nb::dict& keywords) {
+nb::bytes png(const Result& result, const Dict& keywords) {
   const OutputDescription output = shownAs(result, keywords, "png()");
   std::vector<uint8_t> bytes;
   {

@@ -16,6 +16,7 @@
 #include "plan.h"
 #include "process.h"
 #include "result.h"
+#include "values.h"
 
 namespace chromeball::python {
 namespace {
@@ -200,7 +201,7 @@ void bindSession(nb::module_& m) {
           [](PythonSession& s, nb::object f) { s.progress() = std::move(f); }, nb::arg().none())
       .def_prop_ro("work", [](PythonSession& s) {
         const Session::Work work = s.work();
-        nb::dict all;
+        Dict all;
         all["loaded_scene"] = work.loadedScene;
         all["loaded_probe"] = work.loadedProbe;
         all["prepared_lighting"] = work.preparedLighting;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/typing.h>
 
 #include <string>
 
@@ -11,6 +12,8 @@
 namespace chromeball::python {
 
 namespace nb = nanobind;
+
+using Dict = nb::typed<nb::dict, nb::str, nb::any>;  // the type of arguments in stubs
 
 // Numbers, strings, paths, dicts, sequences, and numpy's scalars and arrays; None is left out.
 // Throws InputError, begun by `name`, for anything else.

@@ -109,7 +109,7 @@ def test_a_texture_colours_the_mesh(camera, small):
     (np.ones((4, 8, 4)), r"\[H,W,3\]"),
     (np.full((4, 8, 3), np.nan), r"texel 0, 0 must be finite"),
     (-np.ones((4, 8, 3)), r"not negative"),
-    (np.ones((0, 8, 3)), r""),
+    (np.ones((0, 8, 3)), r"has no texels"),
     (np.ones((4, 8, 3), bool), r"has the type bool"),
 ])
 def test_wrong_probes_are_refused(array, expected):

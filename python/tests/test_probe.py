@@ -18,9 +18,9 @@ def test_a_constant_probe_has_pi_times_its_radiance():
 
 def test_the_middle_shows_minus_z_and_a_quarter_right_of_it_x():
     array = np.zeros((32, 64, 3), np.float32)
-    array[:, 28:36, 0] = 1
-    array[:, 44:52, 1] = 1
-    np.testing.assert_allclose(cb.Probe(array).radiance(AXES[:2]), [[1, 0, 0], [0, 1, 0]], atol=1e-6)
+    array[:, 28:36, 0] = 2
+    array[:, 44:52, 1] = 2
+    np.testing.assert_allclose(cb.Probe(array).radiance(AXES[:2]), [[2, 0, 0], [0, 2, 0]], atol=1e-6)
 
 
 def test_turns():

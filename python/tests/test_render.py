@@ -108,7 +108,8 @@ def test_every_keyword_has_a_meaning():
     names = cb.keywords()
     assert {"samples", "size", "strategy", "probe_rotation", "max_depth", "transparent", "threads"} <= set(names)
     assert not {"output", "checkpoint", "frames"} & set(names)
-    assert all(cb.keywords(name) for name in names)
+    assert all(len(cb.keywords(name)) > 20 for name in names)
+    assert "1 to" in cb.keywords("samples") and "depth" in cb.keywords("layers")
 
 
 def test_results(scene, camera, small):

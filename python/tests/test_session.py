@@ -16,13 +16,15 @@ from conftest import sky, square_scene
 
 import chromeball as cb
 
+# Programs of their own find the same module, and conftest.
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join([os.path.dirname(os.path.dirname(cb.__file__)),
+                                                            os.path.dirname(__file__)])}
 MANY = 1_000_000_000
 
 
 def run(code):
     """Runs a program of its own, with the same module."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([*sys.path, os.path.dirname(__file__)])}
-    return subprocess.run([sys.executable, "-c", textwrap.dedent(code)], env=environment, timeout=120,
+    return subprocess.run([sys.executable, "-c", textwrap.dedent(code)], env=ENVIRONMENT, timeout=120,
                           capture_output=True, text=True)
 
 
@@ -109,6 +111,7 @@ def test_one_session_for_several_threads(scene, camera, small):
     images = []
     waiting = threading.Thread(target=lambda: images.append(session.wait()))
     waiting.start()
+    snapshot_of(session)
     for _ in range(20):
         session.snapshot()
         session.fraction

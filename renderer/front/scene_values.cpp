@@ -17,26 +17,28 @@ constexpr auto kOfTheCommand = std::to_array<std::string_view>(
      "write-every", "preview", "display", "checkpoint", "checkpoint-every", "resume", "shard",
      "progress", "quiet"});
 
-const std::map<std::string, const Setting*, std::less<>>& settingsByKeyword() {
-  static const auto found = [] {
-    std::map<std::string, const Setting*, std::less<>> all;
-    std::map<std::string_view, int> uses;  // of a key
-    const auto isFor = [](const Setting& s) {
-      return s.type != SettingType::Compound && std::ranges::count(kOfTheCommand, s.name()) == 0;
-    };
-    for (const Setting& setting : settingTable()) {
-      if (!setting.key.empty()) ++uses[setting.key];
-      if (setting.option.empty() || !isFor(setting)) continue;
-      std::string keyword = setting.option;
-      std::ranges::replace(keyword, '-', '_');
-      all[keyword] = &setting;
-    }
-    for (const Setting& setting : settingTable())
-      if (uses[setting.key] == 1 && isFor(setting))
-        all.try_emplace(std::string(setting.key), &setting);
-    return all;
-  }();
-  return found;
+using Keywords = std::map<std::string, const Setting*, std::less<>>;
+
+Keywords allKeywords() {
+  std::map<std::string_view, int> uses;  // of a key
+  for (const Setting& setting : settingTable()) ++uses[setting.key];
+  Keywords all;
+  for (const Setting& setting : settingTable()) {
+    if (setting.type == SettingType::Compound ||
+        std::ranges::count(kOfTheCommand, setting.name()) > 0)
+      continue;
+    std::string keyword = setting.option;
+    std::ranges::replace(keyword, '-', '_');
+    if (setting.name() == "output.aovs") keyword = "layers";
+    if (keyword.empty() && uses[setting.key] == 1) keyword = setting.key;
+    if (!keyword.empty()) all[keyword] = &setting;
+  }
+  return all;
+}
+
+const Keywords& settingsByKeyword() {
+  static const Keywords all = allKeywords();
+  return all;
 }
 
 }  // namespace
@@ -61,14 +63,19 @@ std::vector<std::string_view> keywords() {
 Settings keywordSettings(const toml::table& values, const std::string& name) {
   Settings settings;
   for (const auto& [key, value] : values) {
-    const auto found = settingsByKeyword().find(key.str());
-    if (found == settingsByKeyword().end())
+    const Setting* setting = findKeyword(key.str());
+    if (!setting)
       throwInput("{}: unknown keyword `{}`; {}", name, printableName(key.str()),
                  didYouMean(key.str(), keywords()));
-    const Entry entry{name, std::string(key.str()), &value, found->second};
-    settings.set(found->second->name(), entry.value(), fmt::format("{}: {}", name, key.str()));
+    const Entry entry{name, std::string(key.str()), &value, setting};
+    settings.set(setting->name(), entry.value(), fmt::format("{}: {}", name, key.str()));
   }
   return settings;
+}
+
+const Setting* findKeyword(std::string_view keyword) {
+  const auto found = settingsByKeyword().find(keyword);
+  return found == settingsByKeyword().end() ? nullptr : found->second;
 }
 
 std::string keywordOf(std::string_view setting) {
