@@ -24,7 +24,7 @@ MANY = 1_000_000_000
 
 def run(code):
     """Runs a program of its own, with the same module."""
-    return subprocess.run([sys.executable, "-c", textwrap.dedent(code)], env=ENVIRONMENT, timeout=120,
+    return subprocess.run([sys.executable, "-c", textwrap.dedent(code)], env=ENVIRONMENT, timeout=900,
                           capture_output=True, text=True)
 
 
