@@ -58,6 +58,8 @@ TEST(SceneValues, ErrorsBeginWithTheName) {
   EXPECT_EQ(error(toml::table{{"light", toml::array{toml::table{{"type", "point"}, {"angle", 3}}}}})
                 .find("the scene: a point light has no `angle`"),
             0u);
+  EXPECT_NE(error(toml::table{{"model", "none.glb"}}).find("relative to the working folder"),
+            std::string::npos);
 }
 
 TEST(SceneValues, KeywordsAreOptionsWithTheirChecks) {

@@ -197,7 +197,7 @@ std::string existingFile(const Entry& entry, std::string_view relativeTo) {
     checkReadable(path);
   } catch (const InputError& error) {
     failAt(entry.location(), "`{}`: {} (paths are relative to {})", entry.key, error.what(),
-           relativeTo);
+           entry.node->source().begin.line > 0 ? relativeTo : "the working folder");
   }
   return path;
 }
