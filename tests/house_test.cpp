@@ -264,8 +264,8 @@ TEST(House, SourcesStartWithTheirLicence) {
       "^(#!.*\n)?(//|#|\\.\\\\\"|<!--) SPDX-License-Identifier: Apache-2\\.0( -->)?\n";
   std::vector<fs::path> files =
       projectFiles({".h", ".cpp", ".in", ".cmake", ".sh", ".py", ".js", ".bash", ".fish", ".1"});
-  files.insert(files.end(),
-               {"CMakeLists.txt", "pyproject.toml", "tests/consumer/CMakeLists.txt", ".ci/run", "Dockerfile"});
+  files.insert(files.end(), {"CMakeLists.txt", "pyproject.toml", "tests/consumer/CMakeLists.txt",
+                             ".ci/run", "Dockerfile"});
   for (const fs::path& path : files) {
     EXPECT_TRUE(containsMatch(contents(kSourceDir / path), kSpdx))
         << path << ": the first line (after #!) must be SPDX-License-Identifier: Apache-2.0";
@@ -288,10 +288,11 @@ TEST(House, EachFileOfTestsHasANamespaceOfItsName) {
 }
 
 TEST(House, TopLevelHasOnlyListedFiles) {
-  const std::set<std::string> allowed = {
-      "renderer",       "tools",      "tests",     "scenes",  "probes",       "docs",
-      "CMakeLists.txt", "Dockerfile", "README.md", "LICENSE", "CHANGELOG.md", "CMakePresets.json",
-      "CONTRIBUTING.md", "python", "pyproject.toml"};
+  const std::set<std::string> allowed = {"renderer",        "tools",        "tests",
+                                         "scenes",          "probes",       "docs",
+                                         "CMakeLists.txt",  "Dockerfile",   "README.md",
+                                         "LICENSE",         "CHANGELOG.md", "CMakePresets.json",
+                                         "CONTRIBUTING.md", "python",       "pyproject.toml"};
   for (const auto& entry : fs::directory_iterator(kSourceDir)) {
     const std::string name = entry.path().filename().string();
     const bool generated = entry.is_directory() && (name.starts_with("build") || name == "out");

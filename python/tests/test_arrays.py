@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from conftest import SQUARE, TWO, sky
+from conftest import SQUARE, TWO, sky, square_scene
 
 import chromeball as cb
 
@@ -115,3 +115,15 @@ def test_a_texture_colours_the_mesh(camera, small):
 def test_wrong_probes_are_refused(array, expected):
     with pytest.raises(cb.InputError, match=expected):
         cb.Probe(array)
+
+
+def test_a_scene_grows_after_a_render(scene, camera, small):
+    before = cb.render(scene, cb.Probe(sky()), camera, **small)
+    kept = before.color.copy()
+    wall = dict(positions=SQUARE[:, [0, 2, 1]] * 0.5, triangles=TWO, material=cb.Material(double_sided=True))
+    scene.add_mesh(**wall)
+    after = cb.render(scene, cb.Probe(sky()), camera, **small)
+    fresh = square_scene()
+    fresh.add_mesh(**wall)
+    assert np.array_equal(after.color, cb.render(fresh, cb.Probe(sky()), camera, **small).color)
+    assert not np.array_equal(after.color, kept) and np.array_equal(before.color, kept)
