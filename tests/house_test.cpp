@@ -176,7 +176,8 @@ TEST(House, IncludeCheckFindsViolations) {
 std::vector<fs::path> projectFiles(const std::set<std::string>& extensions) {
   const fs::path root = kSourceDir;
   std::vector<fs::path> files;
-  for (const char* folder : {".ci", "renderer", "tools", "tests", "scenes", "probes", "docs"}) {
+  for (const char* folder :
+       {".ci", "renderer", "python", "tools", "tests", "scenes", "probes", "docs"}) {
     if (!fs::exists(root / folder)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.is_regular_file() && extensions.contains(entry.path().extension().string()))
@@ -264,8 +265,8 @@ TEST(House, SourcesStartWithTheirLicence) {
       "^(#!.*\n)?(//|#|\\.\\\\\"|<!--) SPDX-License-Identifier: Apache-2\\.0( -->)?\n";
   std::vector<fs::path> files =
       projectFiles({".h", ".cpp", ".in", ".cmake", ".sh", ".py", ".js", ".bash", ".fish", ".1"});
-  files.insert(files.end(),
-               {"CMakeLists.txt", "tests/consumer/CMakeLists.txt", ".ci/run", "Dockerfile"});
+  files.insert(files.end(), {"CMakeLists.txt", "pyproject.toml", "tests/consumer/CMakeLists.txt",
+                             ".ci/run", "Dockerfile"});
   for (const fs::path& path : files) {
     EXPECT_TRUE(containsMatch(contents(kSourceDir / path), kSpdx))
         << path << ": the first line (after #!) must be SPDX-License-Identifier: Apache-2.0";
@@ -288,10 +289,11 @@ TEST(House, EachFileOfTestsHasANamespaceOfItsName) {
 }
 
 TEST(House, TopLevelHasOnlyListedFiles) {
-  const std::set<std::string> allowed = {
-      "renderer",       "tools",      "tests",     "scenes",  "probes",       "docs",
-      "CMakeLists.txt", "Dockerfile", "README.md", "LICENSE", "CHANGELOG.md", "CMakePresets.json",
-      "CONTRIBUTING.md"};
+  const std::set<std::string> allowed = {"renderer",        "tools",        "tests",
+                                         "scenes",          "probes",       "docs",
+                                         "CMakeLists.txt",  "Dockerfile",   "README.md",
+                                         "LICENSE",         "CHANGELOG.md", "CMakePresets.json",
+                                         "CONTRIBUTING.md", "python",       "pyproject.toml"};
   for (const auto& entry : fs::directory_iterator(kSourceDir)) {
     const std::string name = entry.path().filename().string();
     const bool generated = entry.is_directory() && (name.starts_with("build") || name == "out");

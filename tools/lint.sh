@@ -47,7 +47,7 @@ sources() {
   if hasGit; then
     git ls-files --cached --others --exclude-standard -- '*.h' '*.cpp'
   else
-    find renderer tools tests -name '*.h' -o -name '*.cpp'
+    find renderer python tools tests -name '*.h' -o -name '*.cpp'
   fi
 }
 mapfile -t files < <(sources)

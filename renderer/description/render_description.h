@@ -130,7 +130,7 @@ struct OutputDescription {
 };
 
 struct RenderDescription : SceneParts {
-  // From memory (scene/builder), in place of models; null: none.
+  // From memory (scene/builder), in place of models or together with them; null: none.
   std::shared_ptr<const Scene> scene;
   CameraDescription camera;
   StandDescription stand;

@@ -10,6 +10,7 @@
 #include "front/quality.h"
 #include "front/scene_file_camera.h"
 #include "front/scene_file_sections.h"
+#include "front/scene_values.h"
 #include "front/toml_section.h"
 
 namespace chromeball {
@@ -89,7 +90,7 @@ std::optional<std::string> takePlateScale(const std::string& path, toml::table& 
   toml::table* probe = table["probe"].as_table();
   const toml::node* scale = probe ? probe->get("scale") : nullptr;
   if (!scale || !scale->is_string() || scale->as_string()->get() != "plate") return std::nullopt;
-  const std::string location = fmt::format("{}:{}", path, scale->source().begin.line);
+  const std::string location = locationIn(path, *scale);
   probe->erase("scale");
   return location;
 }
@@ -97,7 +98,12 @@ std::optional<std::string> takePlateScale(const std::string& path, toml::table& 
 }  // namespace
 
 SceneFile readSceneFile(const std::string& path) {
-  toml::table table = parseToml(path);
+  SceneFile scene = sceneOf(parseToml(path), path);
+  if (scene.models.empty()) throwInput("{}: no `model`; name a .gltf or .glb file", path);
+  return scene;
+}
+
+SceneFile sceneOf(toml::table table, const std::string& path) {
   const std::optional<std::string> plateScale = takePlateScale(path, table);
   const Section root(path, table,
                      {"model", "camera", "probe", "lighting", "light", "source", "render", "output",
@@ -109,7 +115,6 @@ SceneFile readSceneFile(const std::string& path) {
     const std::string name = elementName("models", scene.models.size());
     scene.models.push_back(readModel(e, name, scene.origins));
   });
-  if (scene.models.empty()) throwInput("{}: no `model`; name a .gltf or .glb file", path);
   for (const char* section : {"camera", "probe", "lighting", "render", "output"})
     root.section(section).read(scene.settings);
   readCamera(root.section("camera"), scene);

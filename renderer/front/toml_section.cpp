@@ -175,9 +175,8 @@ std::string hintOn(std::string_view key, std::string_view section,
 void Section::checkKeys(const std::vector<std::string_view>& known) const {
   for (const auto& [key, node] : table_)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      failAt(fmt::format("{}:{}", file_, key.source().begin.line), "unknown key `{}`{}; {}",
-             printableName(key.str()), name_.empty() ? "" : " in " + heading(),
-             hintOn(key.str(), name_, known));
+      failAt(locationIn(file_, key), "unknown key `{}`{}; {}", printableName(key.str()),
+             name_.empty() ? "" : " in " + heading(), hintOn(key.str(), name_, known));
 }
 
 Entry Section::required(std::string_view key) const {
@@ -200,8 +199,8 @@ Section Section::section(std::string_view key) const {
 void Section::allowOnly(const std::vector<std::string_view>& keys, std::string_view owner) const {
   for (const auto& [key, node] : table_)
     if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
-      failAt(fmt::format("{}:{}", file_, key.source().begin.line), "{} has no `{}`; it has {}",
-             owner, printableName(key.str()), fmt::join(keys, ", "));
+      failAt(locationIn(file_, key), "{} has no `{}`; it has {}", owner, printableName(key.str()),
+             fmt::join(keys, ", "));
 }
 
 void Section::read(Settings& settings) const {
@@ -222,7 +221,7 @@ std::string existingFile(const Entry& entry, std::string_view relativeTo) {
     checkReadable(path);
   } catch (const InputError& error) {
     failAt(entry.location(), "`{}`: {} (paths are relative to {})", entry.key, error.what(),
-           relativeTo);
+           entry.node->source().begin.line > 0 ? relativeTo : "the working folder");
   }
   return path;
 }

@@ -27,6 +27,13 @@ template <class... Args>
   throwInput("{}: {}", location, what);
 }
 
+// "FILE:LINE"; without a line for values from memory (scene_values.h).
+template <class Place>
+std::string locationIn(const std::string& file, const Place& place) {
+  const auto line = place.source().begin.line;
+  return line > 0 ? fmt::format("{}:{}", file, line) : file;
+}
+
 // One value of the file. Its functions throw InputError for a value of another type, or one outside
 // the range of its row in the table of settings.
 struct Entry {
@@ -36,7 +43,7 @@ struct Entry {
   const Setting* setting = nullptr;  // nullptr: a table, or an array of tables
 
   explicit operator bool() const { return node; }
-  std::string location() const { return fmt::format("{}:{}", file, node->source().begin.line); }
+  std::string location() const { return locationIn(file, *node); }
 
   [[noreturn]] void mustBe(std::string_view what) const;
 
@@ -73,7 +80,7 @@ class Section {
     return {file_, std::string(key), table_.get(key), findSetting(name_, key)};
   }
   Entry required(std::string_view key) const;
-  std::string location() const { return fmt::format("{}:{}", file_, table_.source().begin.line); }
+  std::string location() const { return locationIn(file_, table_); }
 
   // The heading as written in the file: [probe], [[light]].
   std::string heading() const;

@@ -183,6 +183,21 @@ LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mappin
   }
 }
 
+LoadedProbe loadProbe(Image image, std::string_view mapping, std::string_view mappingLocation,
+                      const std::string& name) {
+  if (image.channels != 3 || image.width < 1 || image.height < 1)
+    throwInput("{}: is {} x {} with {} channels; a probe has 3", name, image.width, image.height,
+               image.channels);
+  for (size_t i = 0; i < image.texels.size(); ++i)
+    if (!(image.texels[i] >= 0 && std::isfinite(image.texels[i])))
+      throwInput("{}: texel {}, {} must be finite, and not negative", name,
+                 i / 3 % size_t(image.width), i / 3 / size_t(image.width));
+  ImageFile file;
+  file.image = std::move(image);
+  file.channels = {"R", "G", "B"};
+  return probeOf(std::move(file), name, mapping, mappingLocation);
+}
+
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path) {
   std::vector<std::string> lines;
   if (!probe.certain)

@@ -44,6 +44,11 @@ struct LoadedProbe {
 LoadedProbe loadProbe(const std::filesystem::path& path, std::string_view mapping = "auto",
                       std::string_view mappingLocation = "mapping");
 
+// The same for an image from memory, of three channels; errors and messages call it `name`. Throws
+// InputError, with its position, for a texel that is not finite, or negative.
+LoadedProbe loadProbe(Image image, std::string_view mapping, std::string_view mappingLocation,
+                      const std::string& name);
+
 // Warnings for the user, each "FILE: ..."; often none.
 std::vector<std::string> warnings(const LoadedProbe& probe, const std::filesystem::path& path);
 

@@ -133,7 +133,7 @@ PlacedModels modelsAtOrigin(const RenderDescription& description,
   PlacedModels placed;
   placed.scene = loadModels(description, models, placed.origin, cache, placed.warnings);
   const Bounds box = bounds(placed.scene);
-  checkReach(box, description.scene ? description.sceneName() : models.front().file);
+  checkReach(box, description.sceneName());
   if (description.scene) return placed;
   placed.origin = originFor(box);
   if (placed.origin != glm::dvec3(0))

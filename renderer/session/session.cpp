@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/json.h"
+#include "base/json_text.h"
 #include "base/progress.h"
 #include "description/differences.h"
 #include "render/live_result.h"
@@ -94,6 +96,7 @@ class Session::Implementation : private WorkMonitor {
   bool lightingIsStale_ = false;  // in prepared_: making it was cancelled or has failed
   ModelCache models_;
   Work work_;
+  PhaseSeconds seconds_;  // of the last start()
   std::unique_ptr<WatchedRender> control_;
   std::optional<LiveImage> liveImage_;
   std::shared_ptr<const SessionImage> result_;
@@ -197,14 +200,22 @@ void Session::Implementation::render() {
   say(result.messages);
   const double samples = meanCount(result.render.film.sampleCounts());
   if (samples == 0) return;
+  seconds_.render = result.seconds;
+  std::string report = jsonText(statistics(*loaded_, result, seconds_));
   result_ = std::make_shared<const SessionImage>(
       SessionImage{std::move(result.image), samples, result.noise.noise, !result.render.interrupted,
-                   std::move(result.messages)});
+                   std::move(result.messages), std::move(report)});
 }
 
 void Session::Implementation::prepare() {
   work_ = {};
+  Stopwatch watch;
   loaded_ && !given_->composite && !description_.composite ? changeWhatDiffers() : load();
+  seconds_ = {.load = watch.lap()};
+  if (work_.loadedScene) {
+    seconds_.build = prepared_.buildSeconds, seconds_.prepare = prepared_.prepareSeconds;
+    seconds_.load -= seconds_.build + seconds_.prepare;
+  }
   work_.meshBuilds = prepared_.world->accel.built()->builds();
 }
 

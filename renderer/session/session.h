@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "base/message.h"
 #include "description/render_description.h"
@@ -18,6 +19,8 @@ struct SessionImage {
   double noise = 0;         // of the colour (film/noise.h), a fraction; NaN if unknown
   bool isComplete = false;  // else the render goes on, or was cancelled
   Messages messages = {};   // of the render
+  // JSON, as `chromeball render --stats` writes it; after wait(), else empty.
+  std::string statistics = {};
 
   const Image& color() const { return image.layers.front().image; }
 };

@@ -78,3 +78,12 @@ function(chromeball_internal_target target)
   target_compile_definitions(${target} PRIVATE CHROMEBALL_VERSION="${PROJECT_VERSION}")
   target_link_libraries(${target} PRIVATE chromeball_renderer)
 endfunction()
+
+# Links the static library before a program's own objects: of an inline function that both have a copy of, the
+# linker takes the first, and the program's may be compiled with -Og. So all programs of a build give the same bits.
+function(chromeball_link_library_first target)
+  if(NOT BUILD_SHARED_LIBS)
+    target_link_options(${target} BEFORE PRIVATE
+      -Wl,--whole-archive $<TARGET_FILE:chromeball_renderer> -Wl,--no-whole-archive)
+  endif()
+endfunction()

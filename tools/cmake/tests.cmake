@@ -8,6 +8,7 @@ target_include_directories(tests PRIVATE tests)
 target_link_libraries(tests PRIVATE demo nlohmann_json::nlohmann_json OpenEXR::OpenEXR PNG::PNG
                       JPEG::JPEG Boost::headers GTest::gtest GTest::gtest_main)
 chromeball_optimize_less(tests)
+chromeball_link_library_first(tests)
 chromeball_unity(tests 56)  # each file of tests has a namespace of its name
 # What a third of the tests include, and parse for seconds.
 set(tests_dir ${PROJECT_SOURCE_DIR}/tests)
@@ -27,6 +28,7 @@ set_property(SOURCE tests/paths.cpp PROPERTY COMPILE_DEFINITIONS
 add_executable(command_server tests/command_server/main.cpp)
 chromeball_compile(command_server)
 target_link_libraries(command_server PRIVATE command_line)
+chromeball_link_library_first(command_server)
 set(instrumented 0)
 if(CHROMEBALL_SANITIZE)
   set(instrumented 1)

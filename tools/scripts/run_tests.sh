@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Runs the tests of a build: run_tests.sh BUILD_FOLDER [--no-skips] [GOOGLETEST ARGUMENT...]. Tests that
-# lack something are skipped, and named with the reason; with --no-skips they have failed. Writes
-# BUILD_FOLDER/tests-*.log. The last line is "N passed, N failed".
+# lack something are skipped, and named with the reason; with --no-skips they have failed. The Python module's
+# tests run too if it was built, unless a filter names what is wanted. Writes BUILD_FOLDER/tests-*.log. The last line is "N passed, N failed".
 set -euo pipefail
 scripts=$(cd "$(dirname "$0")" && pwd)
 build=$1
@@ -43,6 +43,16 @@ if (($(grep -l '^\[  PASSED  \]' "$build"/tests-*.log | wc -l) < processes)); th
   ((failed)) || failed=1
 fi
 skipped=$("$scripts/skipped_tests.sh" "$build"/tests-*.log)
+if [[ "${arguments[*]}" != *--gtest_filter=[^-]* ]]; then
+  python=$("$scripts/test_python.sh" "$build")
+  read -r pythonPassed pythonFailed <<<"$python"
+  ((passed += pythonPassed, failed += pythonFailed)) || true
+  skipped+=$(tail -n +2 <<<"$python")
+  if ((pythonFailed)); then
+    cat "$build/tests-python.txt"
+    status=1
+  fi
+fi
 if [[ -n $skipped ]]; then
   echo "Skipped (tools/scripts/test_needs.sh installs what most tests need):"
   echo "$skipped"

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Descriptions of renders, from scenes and keywords.
+#include "plan.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "base/text.h"
+#include "bindings.h"
+#include "front/plan_render.h"
+#include "front/scene_values.h"
+#include "geometry.h"
+#include "probe_map.h"
+#include "values.h"
+
+namespace chromeball::python {
+namespace {
+
+SceneFile sceneOf(nb::handle scene) {
+  if (nb::isinstance<nb::str>(scene)) return openScene(nb::cast<std::string>(scene));
+  SceneFile read = chromeball::sceneOf(tableOf(nb::cast<nb::dict>(scene), "scene"), "scene");
+  read.path.clear();
+  return read;
+}
+
+// A program has means of its own for files, and may have asked for none.
+void keepToMemory(RenderDescription& description) {
+  description.output.files.clear();
+  description.output.stats.reset();
+  description.run.checkpoint.reset();
+}
+
+Plan planOf(nb::handle scene, const Geometry* geometry, const ProbeMap* probe,
+            const std::optional<Dict>& camera, const Dict& keywords, const std::string& caller) {
+  SceneFile file = sceneOf(scene);
+  if (camera) replaceCamera(file, tableOf(*camera, "Camera()"), "Camera()");
+  Settings settings = keywordSettings(tableOf(keywords, caller), caller);
+  if (probe) {
+    if (!settings.has("probe.rotation"))
+      settings.set("probe.rotation", probe->rotation.numbers(), "Probe()");
+    if (!settings.has("probe.scale")) {
+      const glm::dvec3& s = probe->scale;
+      settings.set("probe.scale", std::vector<double>{s.x, s.y, s.z}, "Probe()");
+    }
+  }
+  Plan plan{planRender(std::move(file), settings), size_t(settings.get<uint64_t>("threads"))};
+  RenderDescription& description = plan.description;
+  keepToMemory(description);
+  if (geometry) description.scene = geometry->share();
+  if (probe) {
+    description.probe.file.reset();
+    description.probe.map = probe->map;
+  }
+  if (description.models.empty() && !description.scene)
+    throwInput("{}: the scene has no models, and no meshes", caller);
+  return plan;
+}
+
+void checkScene(const Dict& scene, const std::string& name) {
+  chromeball::sceneOf(tableOf(scene, name), name);
+}
+
+void checkCamera(const Dict& camera, const std::string& name) {
+  SceneFile scene;
+  replaceCamera(scene, tableOf(camera, name), name);
+}
+
+std::vector<std::string> keywordNames() {
+  std::vector<std::string> names;
+  for (const std::string_view keyword : keywords()) names.emplace_back(keyword);
+  return names;
+}
+
+std::string helpOf(const std::string& keyword) {
+  const Setting* setting = findKeyword(keyword);
+  if (!setting)
+    throwInput("keywords(): unknown keyword `{}`; {}", printableName(keyword),
+               didYouMean(keyword, keywords()));
+  return fmt::format("{} Valid: {}.", setting->help, expected(*setting));
+}
+
+}  // namespace
+
+void bindPlan(nb::module_& m) {
+  nb::class_<Plan>(m, "Plan", "A render as it was asked for.");
+  m.def("plan", planOf, nb::arg("scene"), nb::arg("geometry").none(), nb::arg("probe").none(),
+        nb::arg("camera").none(), nb::arg("keywords"), nb::arg("caller"));
+  m.def("check_scene", checkScene, nb::arg("scene"), nb::arg("name"),
+        "Throws InputError for a scene whose keys or values are wrong.");
+  m.def("check_camera", checkCamera, nb::arg("camera"), nb::arg("name"),
+        "Throws InputError for a camera whose keys or values are wrong.");
+  m.def("keywords", keywordNames, "The keywords of chromeball.render().");
+  m.def("help_of", helpOf, nb::arg("keyword"), "What a keyword means, and its valid values.");
+}
+
+}  // namespace chromeball::python

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "description/render_description.h"
+
+namespace chromeball::python {
+
+// A render, and what the library leaves to programs.
+struct Plan {
+  RenderDescription description;
+  size_t threads = 0;  // 0: one for each core
+};
+
+}  // namespace chromeball::python

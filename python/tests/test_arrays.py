@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What add_mesh() and Probe() accept and refuse."""
+
+import numpy as np
+import pytest
+from conftest import SQUARE, TWO, sky, square_scene
+
+import chromeball as cb
+
+
+def rendered(add, camera, small):
+    scene = cb.Scene()
+    add(scene)
+    return cb.render(scene, cb.Probe(sky()), camera, **small).color
+
+
+def test_every_kind_of_array_gives_the_same_image(camera, small):
+    expected = rendered(lambda s: s.add_mesh(SQUARE, TWO), camera, small)
+    wide = np.zeros((4, 6))
+    wide[:, ::2] = SQUARE
+    frozen = SQUARE.copy()
+    frozen.flags.writeable = False
+    for positions, triangles in [
+        (SQUARE.tolist(), TWO.tolist()),
+        (SQUARE.astype(np.float64), TWO.astype(np.uint8)),
+        (np.asfortranarray(SQUARE), np.asfortranarray(TWO)),
+        (wide[:, ::2], TWO.astype(np.int16)),
+        (frozen, TWO.astype(np.uint64)),
+        (SQUARE.astype(">f4"), TWO),
+        (SQUARE[TWO.ravel()], None),
+    ]:
+        assert np.array_equal(rendered(lambda s: s.add_mesh(positions, triangles), camera, small), expected)
+
+
+def test_arrays_are_copied(camera, small):
+    positions = SQUARE.copy()
+    scene = cb.Scene()
+    scene.add_mesh(positions, TWO)
+    expected = cb.render(scene, cb.Probe(sky()), camera, **small).color
+    positions[:] = 7
+    assert np.array_equal(cb.render(scene, cb.Probe(sky()), camera, **small).color, expected)
+
+
+@pytest.mark.parametrize(
+    "arguments, expected",
+    [
+        (dict(positions=SQUARE.T), r"positions: has the shape \[3, 4\]; it should be \[V,3\]"),
+        (dict(positions=SQUARE[None]), r"positions: has the shape"),
+        (dict(positions=[[0, 1], [0]]), r"positions: is no array"),
+        (dict(positions=SQUARE.astype(complex)), r"positions: has the type complex128; it should have real numbers"),
+        (dict(positions=SQUARE.astype(object)), r"positions: has the type object"),
+        (dict(positions=SQUARE * np.nan), r"position"),
+        (dict(positions=SQUARE.astype(np.float64) * 1e39), r"position"),
+        (dict(positions=SQUARE[:0], triangles=TWO[:0]), r"has no triangles"),
+        (dict(triangles=TWO.astype(np.float32)), r"triangles: has the type float32; it should have whole numbers"),
+        (dict(triangles=TWO - 1), r"triangles: -1 is out of range"),
+        (dict(triangles=TWO + 2**32), r"triangles: 4294967299 is out of range"),
+        (dict(triangles=TWO + 1), r"triangle"),
+        (dict(normals=SQUARE[:3]), r"normals"),
+        (dict(uvs=SQUARE), r"uvs: has the shape \[4, 3\]; it should be \[V,2\]"),
+        (dict(colors=-np.ones((4, 3))), r"color"),
+        (dict(transform=np.eye(3)), r"transform: has the shape \[3, 3\]"),
+        (dict(transform=np.diag([1, 1, 0, 1])), r"not invertible"),
+        (dict(transform=np.full((4, 4), np.nan)), r"transform: is not finite"),
+        (dict(material="red"), r"material: is a str"),
+    ],
+)
+def test_wrong_meshes_are_refused_by_name(arguments, expected, camera, small):
+    scene = cb.Scene()
+    with pytest.raises(cb.InputError, match=expected):
+        scene.add_mesh(**{"positions": SQUARE, "triangles": TWO, **arguments})
+    scene.add_mesh(SQUARE, TWO)  # an error leaves the scene as it was
+    assert np.array_equal(
+        cb.render(scene, cb.Probe(sky()), camera, **small).color,
+        rendered(lambda s: s.add_mesh(SQUARE, TWO), camera, small),
+    )
+
+
+@pytest.mark.parametrize(
+    "keywords, expected",
+    [
+        (dict(base_colour=1), r"unknown keyword `base_colour`; did you mean `?base_color"),
+        (dict(base_color=(1, 2)), r"base_color should be"),
+        (dict(base_color=2), r"must be 0 to 1"),
+        (dict(roughness="high"), r"roughness should be a number"),
+        (dict(roughness=float("nan")), r"roughness is nan"),
+        (dict(alpha_mode="masked"), r"did you mean `?mask"),
+        (dict(unlit=1), r"unlit should be True or False"),
+        (dict(base_color_texture=np.zeros((2, 2, 2))), r"base_color_texture: has the shape \[2, 2, 2\]"),
+        (dict(base_color_texture=np.zeros((2, 2, 3), np.int64)), r"should have bytes"),
+    ],
+)
+def test_wrong_materials_are_refused_by_name(keywords, expected):
+    with pytest.raises(cb.InputError, match=expected):
+        cb.Material(**keywords)
+
+
+def test_a_texture_colours_the_mesh(camera, small):
+    texture = np.zeros((2, 2, 3), np.uint8)
+    texture[..., 0] = 255
+    scene = cb.Scene()
+    scene.add_mesh(SQUARE, TWO, uvs=SQUARE[:, ::2], material=cb.Material(base_color_texture=texture, specular=0))
+    middle = cb.render(scene, cb.Probe(sky()), camera, **small).color[8, 12]
+    assert middle[0] > 0 and middle[1] == 0 and middle[2] == 0
+
+
+@pytest.mark.parametrize("array, expected", [
+    (np.ones((4, 8)), r"\[H,W,3\]"),
+    (np.ones((4, 8, 4)), r"\[H,W,3\]"),
+    (np.full((4, 8, 3), np.nan), r"texel 0, 0 must be finite"),
+    (-np.ones((4, 8, 3)), r"not negative"),
+    (np.ones((0, 8, 3)), r"has no texels"),
+    (np.ones((4, 8, 3), bool), r"has the type bool"),
+])
+def test_wrong_probes_are_refused(array, expected):
+    with pytest.raises(cb.InputError, match=expected):
+        cb.Probe(array)
+
+
+def test_a_scene_grows_after_a_render(scene, camera, small):
+    before = cb.render(scene, cb.Probe(sky()), camera, **small)
+    kept = before.color.copy()
+    wall = dict(positions=SQUARE[:, [0, 2, 1]] * 0.5, triangles=TWO, material=cb.Material(double_sided=True))
+    scene.add_mesh(**wall)
+    after = cb.render(scene, cb.Probe(sky()), camera, **small)
+    fresh = square_scene()
+    fresh.add_mesh(**wall)
+    assert np.array_equal(after.color, cb.render(fresh, cb.Probe(sky()), camera, **small).color)
+    assert not np.array_equal(after.color, kept) and np.array_equal(before.color, kept)

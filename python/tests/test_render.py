@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: Apache-2.0
+"""render(): bits of the command, keywords, results."""
+
+import gc
+import json
+import math
+import subprocess
+import sys
+import warnings
+
+import numpy as np
+import pytest
+from conftest import PROJECT, SQUARE, TWO, sky, square_scene
+
+import chromeball as cb
+
+MODEL = PROJECT / "scenes" / "models" / "still-life.glb"
+PROBE = PROJECT / "probes" / "dusk.exr"
+SCENE = f"""
+model = "{MODEL}"
+[probe]
+file = "{PROBE}"
+rotation = 40
+[render]
+size = [32, 24]
+samples = 16
+"""
+
+
+def pfm(path):
+    with open(path, "rb") as file:
+        assert file.readline() == b"PF\n"
+        width, height = map(int, file.readline().split())
+        assert float(file.readline()) < 0
+        return np.fromfile(file, "<f4").reshape(height, width, 3)[::-1]
+
+
+def test_the_same_bits_as_the_command(command, tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    arguments = ["--seed", "3", "--strategy", "importance", "--max-depth", "3"]
+    subprocess.run([command, "render", "scene.toml", "-o", "command.pfm", *arguments], check=True)
+    expected = pfm("command.pfm")
+    settings = dict(seed=3, strategy="importance", max_depth=3)
+    assert np.array_equal(cb.render("scene.toml", **settings).color, expected)
+    as_dict = {"model": MODEL, "probe": {"file": PROBE, "rotation": 40}, "render": {"size": (32, 24), "samples": 16}}
+    assert np.array_equal(cb.render(as_dict, **settings).color, expected)
+    settings.update(size=np.array([32, 24]), samples=np.int64(16))
+    scene, probe = cb.load(MODEL), cb.Probe(PROBE)
+    assert np.array_equal(cb.render(scene, probe.rotated(40), **settings).color, expected)
+    assert not np.array_equal(cb.render(scene, probe, **settings).color, expected)
+    # The scene is loaded already; the probe turns.
+    assert np.array_equal(cb.render(scene, probe, probe_rotation=40, **settings).color, expected)
+
+
+def test_seeds_and_repeats(scene, camera, small):
+    probe = cb.Probe(sky())
+    first = cb.render(scene, probe, camera, seed=1, **small).color
+    assert np.array_equal(cb.render(square_scene(), probe, camera, seed=1, **small).color, first)
+    assert np.array_equal(cb.render(scene, probe, camera, seed=1, **{**small, "threads": 1}).color, first)
+    assert not np.array_equal(cb.render(scene, probe, camera, seed=2, **small).color, first)
+
+
+def test_a_matte_square_has_the_radiance_of_its_irradiance(camera):
+    probe = cb.Probe(sky())
+    image = cb.render(square_scene(), probe, camera, size=(16, 16), samples=512, max_depth=1)
+    expected = probe.irradiance([[0, 1, 0]])[0] * [0.5, 0.4, 0.3] / np.pi
+    np.testing.assert_allclose(image.color[7:9, 7:9].mean((0, 1)), expected, rtol=0.03)
+
+
+@pytest.mark.parametrize("settings, expected", [
+    (dict(sampels=4), r"render\(\): unknown keyword `sampels`; did you mean `?samples"),
+    (dict(samples="many"), r"`samples` must be a whole number"),
+    (dict(samples=-1), r"`samples` must be a whole number"),
+    (dict(samples=2**70), r"`samples` must be a whole number"),
+    (dict(samples=True), r"`samples` must be a whole number"),
+    (dict(time=float("nan")), r"`time` must be"),
+    (dict(size=(10,)), r"`size` must be"),
+    (dict(strategy="importanse"), r"did you mean `?importance"),
+    (dict(layers=["deph"]), r"did you mean `?depth"),
+    (dict(denoise="yes"), r"`denoise` must be"),
+    (dict(samples=object()), r"samples: is of the type object"),
+    (dict(output="a.exr"), r"unknown keyword `output`"),
+    (dict(progress="bar"), r"progress: is a str"),
+    (dict(camera="Front"), r"camera is a str"),
+    (dict(probe=3), r"probe is a int"),
+    (dict(scene=3), r"scene is a int"),
+    (dict(scene=cb.Scene()), r"has no models, and no meshes"),
+    (dict(scene={"modell": "a.glb"}), r"scene: unknown key `modell`; did you mean `?model"),
+    (dict(scene={"render": {"sampels": 3}}), r"scene: unknown key `sampels` in \[render\]; did you mean `?samples"),
+    (dict(scene="nothing.toml"), r"nothing.toml"),
+    (dict(probe=None), r"nothing lights the scene; it needs a probe"),
+])
+def test_wrong_arguments_are_refused_by_name(settings, expected, scene, camera):
+    arguments = {"scene": scene, "probe": cb.Probe(sky()), "camera": camera, "size": (8, 8), "samples": 2, **settings}
+    with pytest.raises(cb.InputError, match=expected):
+        cb.render(**arguments)
+    assert cb.render(scene, cb.Probe(sky()), size=(8, 8), samples=2).is_complete
+
+
+def test_a_list_that_contains_itself_is_refused(scene):
+    endless = []
+    endless.append(endless)
+    with pytest.raises(cb.InputError, match="nested"):
+        cb.render(scene, layers=endless)
+
+
+def test_every_keyword_has_a_meaning():
+    names = cb.keywords()
+    assert {"samples", "size", "strategy", "probe_rotation", "max_depth", "transparent", "threads"} <= set(names)
+    assert not {"output", "checkpoint", "frames"} & set(names)
+    assert all(len(cb.keywords(name)) > 20 for name in names)
+    assert "1 to" in cb.keywords("samples") and "depth" in cb.keywords("layers")
+
+
+def test_results(scene, camera, small):
+    image = cb.render(scene, cb.Probe(sky()), camera, layers=["depth", "normal"], transparent=True, **small)
+    assert image.color.shape == (16, 24, 4) and image.color.dtype == np.float32
+    assert not image.color.flags.writeable and image.color.flags.c_contiguous
+    assert np.shares_memory(image.color, image.color)
+    depth = image.layers["depth"]
+    assert depth.shape == (16, 24)
+    np.testing.assert_allclose(depth[8, 12], math.sqrt(8), rtol=0.1)
+    np.testing.assert_allclose(image.layers["normal"][8, 12], [0, 1, 0], atol=1e-3)
+    assert image.color[8, 12, 3] == 1 and image.color[0, 0, 3] == 0
+    assert image.stats["samples_per_pixel"] == 16 and image.stats["rays"]["camera"] > 0
+    assert 0 < image.noise < 1 and image.samples == pytest.approx(16, rel=0.1) and image.is_complete
+    assert image.metadata["max-depth"] == 8
+    color, layer = image.color, image.layers["depth"]
+    first = color.copy(), layer.copy()
+    del image, depth
+    gc.collect()
+    assert np.array_equal(color, first[0]) and np.array_equal(layer, first[1])
+
+
+def test_other_libraries_see_the_same_numbers(scene, camera, small):
+    image = cb.render(scene, cb.Probe(sky()), camera, **small)
+    shared = np.from_dlpack(image)
+    assert np.array_equal(shared, image.color) and np.shares_memory(shared, image.color)
+    assert np.shares_memory(np.asarray(image), image.color)
+    assert np.asarray(image, np.float64).dtype == np.float64
+
+
+def test_files_and_pictures(scene, camera, small, tmp_path):
+    image = cb.render(scene, cb.Probe(sky()), camera, layers=["depth"], **small)
+    for name in ("a.exr", "a.hdr", "a.pfm", "a.png"):
+        image.save(tmp_path / name)
+        assert (tmp_path / name).stat().st_size > 100
+    assert np.array_equal(pfm("a.pfm"), image.color)
+    assert image._repr_png_() == (tmp_path / "a.png").read_bytes()
+    assert image.png(exposure=3) != image.png(exposure=0) and image.png(exposure="auto") == image.png()
+    with pytest.raises(cb.InputError, match=".exr"):
+        image.save("a.gif")
+    with pytest.raises(cb.InputError, match="did you mean `?exposure"):
+        image.png(exposur=1)
+    with pytest.raises((cb.RunError, cb.InputError)):
+        image.save("no/such/folder.exr")
+
+
+def test_warnings_are_pythons(scene, camera, small):
+    with pytest.warns(cb.RenderWarning, match="is black"):
+        cb.Probe(np.zeros((8, 16, 3)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cb.render(scene, cb.Probe(sky()), camera, **small)
+
+
+def test_progress(scene, camera, small, capsys):
+    seen = []
+    cb.render(scene, cb.Probe(sky()), camera, progress=lambda *p: seen.append(p), **small)
+    assert seen[-1] == ("render", 1) and {stage for stage, _ in seen} >= {"probe", "render"}
+    count = len(seen)
+    cb.render(scene, cb.Probe(sky()), camera, **small)
+    assert len(seen) == count
+    cb.render(scene, cb.Probe(sky()), camera, progress=True, **small)
+    assert "render 100%" in capsys.readouterr().err
+
+    def fails(stage, fraction):
+        raise KeyError(stage)
+
+    with pytest.raises(KeyError):
+        cb.render(scene, cb.Probe(sky()), camera, progress=fails, **small)
+    assert cb.render(scene, cb.Probe(sky()), camera, **small).is_complete
+
+
+def test_lamps_instances_and_models_go_together(camera, small):
+    scene = square_scene()
+    cube = scene.add_mesh(SQUARE, TWO, material=cb.Material(double_sided=True), transform=np.diag([0.1, 1, 0.1, 1]))
+    for x in range(3):
+        matrix = np.diag([0.1, 1.0, 0.1, 1.0])
+        matrix[:3, 3] = x - 1, 0.5, 0
+        scene.add_instance(cube, matrix)
+    dark = cb.render(scene, cb.Probe(sky()), camera, **small)
+    assert dark.stats["triangles"] == 10
+    scene.add_light("point", position=(0, 3, 0), power=100)
+    assert cb.render(scene, cb.Probe(sky()), camera, **small).color.sum() > dark.color.sum()
+    scene.add_model(MODEL, translation=(0, 0, -1))
+    assert cb.render(scene, cb.Probe(sky()), camera, **small).stats["triangles"] > 10
+    with pytest.raises(cb.InputError, match=r"add_light\(\): a point light has no `radiance`"):
+        scene.add_light("point", position=(0, 3, 0), radiance=3)
+    with pytest.raises(cb.InputError, match="did you mean `?spot"):
+        scene.add_light("spott")
+    with pytest.raises(cb.InputError, match="no mesh 7 among 2"):
+        scene.add_instance(7, np.eye(4))
+    with pytest.raises(cb.InputError, match="nothing.glb"):
+        scene.add_model("nothing.glb")
+
+
+def test_cameras(scene, small):
+    probe = cb.Probe(sky())
+    expected = cb.render(scene, probe, cb.Camera.look_at((0, 0, 3), (0, 0, 0), fov=40), **small).color
+    pose = np.eye(4)
+    pose[2, 3] = 3
+    f = 8 / math.tan(math.radians(20))
+    K = [[f, 0, 12], [0, f, 8], [0, 0, 1]]
+    for camera in (
+        cb.Camera.from_matrix(pose, fov=40),
+        cb.Camera.from_matrix(pose @ np.diag([1, -1, -1, 1]), "opencv", fov=40),
+        cb.Camera.from_matrix(pose[:3], fov=40),
+        cb.Camera.from_intrinsics(K, (24, 16), pose),
+    ):
+        np.testing.assert_allclose(cb.render(scene, probe, camera, **small).color, expected, rtol=1e-2, atol=1e-3)
+    assert cb.render(scene, probe, cb.Camera.from_intrinsics(K, (24, 16), pose), samples=2).color.shape == (16, 24, 3)
+    shifted = cb.Camera.from_intrinsics([[f, 0, 9], [0, f, 8], [0, 0, 1]], (24, 16), pose)
+    assert not np.allclose(cb.render(scene, probe, shifted, **small).color, expected, rtol=1e-2)
+    for wrong in (
+        lambda: cb.Camera(positon=(0, 0, 1)),
+        lambda: cb.Camera.look_at((0, 0, 1), (0, 0, 1)),
+        lambda: cb.Camera.from_matrix(2 * np.eye(4)),
+        lambda: cb.Camera.from_matrix(np.diag([-1, 1, 1, 1])),
+        lambda: cb.Camera.from_matrix(np.eye(4), "blender"),
+        lambda: cb.Camera.from_intrinsics([[f, 0, 9], [0, 2 * f, 8], [0, 0, 1]], (24, 16)),
+        lambda: cb.Camera.from_intrinsics(np.full((3, 3), np.nan), (24, 16)),
+    ):
+        with pytest.raises(cb.InputError):
+            wrong()
+
+
+def resident():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * 4096
+
+
+def test_many_renders_leak_nothing(camera):
+    probe = cb.Probe(sky(128))
+
+    def work():
+        scene = square_scene()
+        for angle in (0, 30):
+            cb.render(scene, probe.rotated(angle), camera, size=(64, 64), samples=1, layers=["depth"],
+                      progress=lambda *_: None)
+        with pytest.raises(cb.InputError):
+            cb.render(scene, probe, camera, strategy="none")
+
+    for _ in range(20):
+        work()
+    gc.collect()
+    before, references = resident(), sys.getrefcount(None)
+    for _ in range(60):
+        work()
+    gc.collect()
+    # One image, its film and the probe's table take 0.6 MB a render.
+    assert resident() - before < 10e6
+    assert abs(sys.getrefcount(None) - references) < 50
