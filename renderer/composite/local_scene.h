@@ -53,6 +53,9 @@ Ground groundAround(const Camera& camera, float aspectRatio, const Bounds& objec
 // The name of the node that addGround() adds, which no node of a model has.
 inline constexpr const char* kGroundNode = "[composite] ground";
 
+// The reflectance of a ground of which nothing is known.
+inline constexpr Rgb kTypicalGround(0.25f);
+
 // Adds the rectangle, matte. It lies lower by 1e-5 of the objects' size, so that surfaces of the
 // model at its height are in front of it.
 void addGround(Scene& scene, const Ground& ground, const Rgb& reflectance);

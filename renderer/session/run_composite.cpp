@@ -155,8 +155,6 @@ Ground clipped(Ground ground, const Surroundings& around, const std::string& loc
   return ground;
 }
 
-constexpr Rgb kTypicalGround(0.25f);
-
 void placeGround(const RenderDescription& description, LoadedScene& loaded) {
   const CompositeDescription& composite = *description.composite;
   const std::string location = description.origins.of(

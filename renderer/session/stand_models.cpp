@@ -76,8 +76,7 @@ void addGround(RenderDescription& description, const AutomaticView& view, const 
   const vec3 centre = 0.5f * (box.min + box.max);
   const vec2 middle(centre.x, centre.z);
   const float reach = kReach * float(glm::length(box.size()));
-  addGround(scene, {float(height - origin.y), middle - reach, middle + reach},
-            CompositeEntry().groundReflectance);
+  addGround(scene, {float(height - origin.y), middle - reach, middle + reach}, kTypicalGround);
 }
 
 }  // namespace chromeball
