@@ -9,7 +9,6 @@
 namespace chromeball {
 namespace {
 
-
 // Fresnel's reflectance at normal incidence.
 float normalReflectance(float eta) {
   const float r = (eta - 1) / (eta + 1);

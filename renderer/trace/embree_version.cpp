@@ -14,12 +14,12 @@ EmbreeVersion embreeVersion() {
   const auto get = [&](RTCDeviceProperty property) {
     return int(rtcGetDeviceProperty(device, property));
   };
-  const EmbreeVersion found{fmt::format("{}.{}.{}", get(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
-                                        get(RTC_DEVICE_PROPERTY_VERSION_MINOR),
-                                        get(RTC_DEVICE_PROPERTY_VERSION_PATCH)),
-                            get(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
-                            : get(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
-                                                                             : 4};
+  const EmbreeVersion found{
+      fmt::format("{}.{}.{}", get(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+                  get(RTC_DEVICE_PROPERTY_VERSION_MINOR), get(RTC_DEVICE_PROPERTY_VERSION_PATCH)),
+      get(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+      : get(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                                                       : 4};
   rtcReleaseDevice(device);
   return found;
 }
