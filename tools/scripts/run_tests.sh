@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs the tests of a build: run_tests.sh BUILD_FOLDER [--no-skips] [GOOGLETEST ARGUMENT...]. Tests that
 # lack something are skipped, and named with the reason; with --no-skips they have failed. The Python module's
-# tests run too if it was built, unless a filter names what is wanted. Writes BUILD_FOLDER/tests-*.log. The last line is "N passed, N failed".
+# tests run too if it was built, unless a filter names what is wanted. Writes BUILD_FOLDER/tests-*.log. The
+# last line is "N passed, N failed".
 set -euo pipefail
 scripts=$(cd "$(dirname "$0")" && pwd)
 build=$1
