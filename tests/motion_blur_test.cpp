@@ -323,7 +323,7 @@ TEST(SlowMotionBlur, OfARealModelIsTheMeanOfStills) {
   std::ofstream(folder / "scene.toml")
       << "model = \"" << model->string() << "\"\n[probe]\nfile = \"" << kSourceDir
       << "/probes/dusk.exr\"\n"
-      << "[camera]\nshutter_steps = 32\n";
+      << "[camera]\nzoom = 1.7\nshutter_steps = 32\n";
   expectMeanOfStills(folder / "scene.toml", 0.25, {48, 32});
 }
 

@@ -16,8 +16,8 @@ constexpr std::array kOfProbe = {"probe", "probe-mapping", "probe-rotation", "pr
                                  "probe-in-memory"};
 constexpr std::array kOfLighting = {"strategy",    "mis",        "sun-angle",
                                     "show-lights", "integrator", "aov"};
-constexpr std::array kOfCamera = {"camera", "camera-file", "scene-camera", "lens",
-                                  "optics", "orbit",       "size",         "crop"};
+constexpr std::array kOfCamera = {"camera", "camera-file", "scene-camera", "lens", "optics",
+                                  "orbit",  "zoom",        "size",         "crop"};
 constexpr std::array kOfPaths = {"noise-limit",
                                  "time-limit",
                                  "shard",
@@ -56,11 +56,13 @@ Differences::Differences(const RenderDescription& a, const RenderDescription& b)
     d.scene.reset(), d.probe.map.reset();
     return describe(d);
   };
+  // The field of view of an automatic camera decides where it stands, as the scene is loaded.
+  const bool isPlaced = a.camera.placed && b.camera.placed;
   const nlohmann::ordered_json was = fromFiles(a), is = fromFiles(b);
   for (const auto* one : {&was, &is})
     for (const auto& [name, ignored] : one->items())
       if (was.value(name, nlohmann::ordered_json()) != is.value(name, nlohmann::ordered_json()))
-        names_.insert(name);
+        names_.insert(isPlaced && name == "fov" ? "lens" : name);
 }
 
 bool Differences::keepScene() const { return std::ranges::all_of(names_, keepsScene); }

@@ -14,8 +14,7 @@ namespace {
 // Files, frames and displays of the command, which a program has means of its own for.
 constexpr auto kOfTheCommand = std::to_array<std::string_view>(
     {"output.file", "stats", "frames", "frame", "overwrite", "seed-per-frame", "probe-sequence",
-     "write-every", "preview", "display", "checkpoint", "checkpoint-every", "resume", "shard",
-     "progress", "quiet"});
+     "write-every", "preview", "display", "checkpoint", "checkpoint-every", "resume", "shard"});
 
 using Keywords = std::map<std::string, const Setting*, std::less<>>;
 

@@ -186,17 +186,6 @@ std::vector<Setting> commandRows() {
            .type = Flag,
            .help = "Continues from the checkpoint, or starts where there is none."},
       });
-  rows.insert(rows.end(), {
-                              {.option = "progress",
-                               .type = Flag,
-                               .help = "Shows the progress bar also if standard error is not a "
-                                       "terminal, where there are lines.",
-                               .effect = Effect::Run},
-                              {.option = "quiet",
-                               .type = Flag,
-                               .help = "Shows neither progress nor notes; warnings stay.",
-                               .effect = Effect::Run},
-                          });
   return rows;
 }
 

@@ -188,8 +188,8 @@ class Bake {
     prepared_ = prepareScene(loaded_);
     tracer_.emplace(*prepared_.world, *prepared_.lighting, PathSettings{});
     light_.emplace(*tracer_, settings_.what, settings_.distance);
-    print(loaded_.messages, options_.quiet());  // after the last error that input can cause
-    ProgressBar bar(options_.progress(), "baking");
+    print(loaded_.messages);  // after the last error that input can cause
+    ProgressBar bar(progressStyle(), "baking");
     BakeResult baked = bake(*prepared_.world, *prepared_.lighting, meshes_, points, settings_,
                             [&](double fraction) { bar.update(fraction); });
     if (baked.invalid.total() > 0)
@@ -246,9 +246,8 @@ class Bake {
              m.name);
         break;
       }
-    if (!options_.quiet())
-      fmt::print("baked {} in {:.2f} s, {} samples: {}\n", options_.what, watch_.seconds(),
-                 settings_.samples, printable(summary_));
+    say("baked {} in {:.2f} s, {} samples: {}\n", options_.what, watch_.seconds(),
+        settings_.samples, printable(summary_));
   }
 
   const BakeOptions& options_;

@@ -95,11 +95,11 @@ void runBasisPixels(const BasisArguments& a) {
   const int rows = rowsOfBand(loaded, basis);
   const RenderSettings& s = description.settings;
   const World world(loaded.scene, {}, BsdfTables(loaded.scene.materials, false));
-  print(loaded.messages, a.quiet());  // after the last error that input can cause
+  print(loaded.messages);  // after the last error that input can cause
   const BasisRenderer renderer(world, loaded.camera, basis, s);
   catchInterrupts();
   const Written written = [&] {
-    ProgressBar bar(a.progress());
+    ProgressBar bar(progressStyle());
     return writeStage(renderer, s, rows, a, metadataOf(a, description),
                       [&](double done) { bar.update(done); });
   }();
@@ -109,12 +109,11 @@ void runBasisPixels(const BasisArguments& a) {
   if (written.clipped > 0)
     warn("{}: {} numbers above 65504, the largest of 16 bits, were clipped; leave out --half",
          a.out, written.clipped);
-  if (!a.quiet())
-    fmt::print("{} x {} pixels, {} samples, {} elements ({}){}{} in {:.2f} s: {}\n", s.width,
-               s.height, s.samples, basis.size(), basis.name(),
-               written.hasOwnLight ? " and the scene's own light" : "",
-               rows < s.height ? fmt::format(", in {} bands", ceilDivide(s.height, rows)) : "",
-               watch.seconds(), printableName(a.out));
+  say("{} x {} pixels, {} samples, {} elements ({}){}{} in {:.2f} s: {}\n", s.width, s.height,
+      s.samples, basis.size(), basis.name(),
+      written.hasOwnLight ? " and the scene's own light" : "",
+      rows < s.height ? fmt::format(", in {} bands", ceilDivide(s.height, rows)) : "",
+      watch.seconds(), printableName(a.out));
 }
 
 }  // namespace chromeball

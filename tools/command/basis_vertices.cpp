@@ -47,18 +47,17 @@ class BasisVertices {
       throwInput("{}: has no triangle with an area; there is no transfer", options_.scene);
     options_.isGlossy ? checkGlossyMemory(points.size()) : checkMemory(points.size());
     const World world(loaded_.scene, {}, BsdfTables(loaded_.scene.materials, false));
-    print(loaded_.messages, options_.quiet());  // after the last error that input can cause
+    print(loaded_.messages);  // after the last error that input can cause
     options_.isGlossy ? writeGlossy(world, meshes, points) : writeDiffuse(world, meshes, points);
-    if (!options_.quiet())
-      fmt::print("transfer of {} vertices in {:.2f} s, {}, {} samples{}: {}\n", points.size(),
-                 watch_.seconds(), basis_.name(), loaded_.description.settings.samples, summary_,
-                 printableName(options_.out));
+    say("transfer of {} vertices in {:.2f} s, {}, {} samples{}: {}\n", points.size(),
+        watch_.seconds(), basis_.name(), loaded_.description.settings.samples, summary_,
+        printableName(options_.out));
   }
 
  private:
   void writeDiffuse(const World& world, const std::vector<PlacedMesh>& meshes,
                     const std::vector<BakePoint>& points) const {
-    ProgressBar bar(options_.progress(), "transfer");
+    ProgressBar bar(progressStyle(), "transfer");
     const VertexTransfer transfer = estimateTransfer(
         world, meshes, points, basis_, settings(), [&](double fraction) { bar.update(fraction); });
     report(transfer.invalid);
@@ -68,7 +67,7 @@ class BasisVertices {
 
   void writeGlossy(const World& world, const std::vector<PlacedMesh>& meshes,
                    const std::vector<BakePoint>& points) {
-    ProgressBar bar(options_.progress(), "transfer");
+    ProgressBar bar(progressStyle(), "transfer");
     const GlossyTransfer transfer = estimateGlossyTransfer(
         world, meshes, points, basis_, settings(), [&](double fraction) { bar.update(fraction); });
     report(transfer.matrices.invalid);

@@ -135,14 +135,13 @@ void finishOutput() {
     throwRun("standard output: {}", std::strerror(errno));
 }
 
-// --progress and --quiet for the commands below `app` that write files and do not have them.
+// --progress and --quiet for the commands below `app` that write files.
 void addVerbosity(CLI::App& app) {
   constexpr std::array kReaders = {"info", "reflectivity", "doctor", "reference"};
   for (CLI::App* command : app.get_subcommands(nullptr)) {
     if (!command->get_subcommands(nullptr).empty()) {
       addVerbosity(*command);
-    } else if (std::ranges::count(kReaders, command->get_name()) == 0 &&
-               !command->get_option_no_throw("--quiet")) {
+    } else if (std::ranges::count(kReaders, command->get_name()) == 0) {
       command->add_flag("--progress", verbosity().progress,
                         "show the progress bar also if standard error is not a terminal");
       command->add_flag("--quiet", verbosity().quiet,

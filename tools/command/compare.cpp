@@ -209,9 +209,9 @@ void compare(const CompareArguments& a, const Command& command) {
   if (!study.referenceFile.empty())
     loadReference(study, store, description.settings.width, description.settings.height,
                   &ofReference);
-  print(ofRows, a.scene.quiet());
-  print(ofReference, a.scene.quiet());
-  print(loaded.messages, a.scene.quiet());
+  print(ofRows);
+  print(ofReference);
+  print(loaded.messages);
   if (hadComposite)
     warn(
         "{}: [composite] is ignored: strategies are compared on the whole model, without the plate",
@@ -237,7 +237,7 @@ void compare(const CompareArguments& a, const Command& command) {
   };
   catchInterrupts();
   const bool whole = [&] {
-    ProgressBar bar(a.scene.progress());
+    ProgressBar bar(progressStyle());
     return run.run([&](double fraction) { bar.update(fraction); }, [&] { write(results()); },
                    interrupted);
   }();
@@ -248,7 +248,7 @@ void compare(const CompareArguments& a, const Command& command) {
   const StudyResults all = results();
   write(all);
   for (const std::string& warning : all.warnings) warn(warning);
-  if (a.scene.quiet()) return;
+  if (verbosity().quiet) return;
   fmt::print("{}", resultsTable(study, all));
   for (const std::string& sentence : verdict(study, all)) fmt::print("{}\n", sentence);
 }

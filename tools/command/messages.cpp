@@ -49,12 +49,12 @@ void warn(const std::string& text) { note("warning: " + text); }
 
 void note(const std::string& text) { writeError(fmt::format("chromeball: {}\n", printable(text))); }
 
-void print(const Messages& messages, bool quiet) {
+void print(const Messages& messages) {
   for (const Message& message : condensed(messages)) {
     const std::string text = message.text + inWords(message.remedy);
     if (message.kind == Message::Kind::Warning)
       warn(text);
-    else if (!quiet && !verbosity().quiet)
+    else if (!verbosity().quiet)
       note(text);
   }
 }

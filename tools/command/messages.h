@@ -26,8 +26,7 @@ void note(fmt::format_string<First, More...> format, First&& first, More&&... mo
   note(fmt::vformat(format, fmt::make_format_args(first, more...)));
 }
 
-// What --quiet and --progress of the command say that runs; commands of scenes have these among
-// their settings.
+// What --quiet and --progress of the command say that runs.
 struct Verbosity {
   bool quiet = false, progress = false;
 };
@@ -42,9 +41,8 @@ void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
 // As it is: parts of lines, and controls of the terminal.
 void writeError(std::string_view text);
 
-// All warnings, and the notes unless `quiet` or the command is; each with the option that resolves
-// it.
-void print(const Messages& messages, bool quiet = false);
+// All warnings, and the notes unless the command is quiet; each with the option that resolves it.
+void print(const Messages& messages);
 
 // The end of a sentence: "; try --probe-scale 0.019", or "; see --memory GB"; empty without one.
 std::string inWords(const std::optional<Remedy>& remedy);

@@ -57,17 +57,17 @@ std::string titleOf(const Setting& setting) {
 
 // Options that decide the light on surfaces, and none that need an image.
 constexpr std::string_view kOfBake[] = {
-    "probe",          "probe-mapping",  "probe-rotation", "probe-scale", "samples",   "seed",
-    "max-depth",      "ao-distance",    "strategy",       "light-from",  "sun-angle", "light-units",
-    "animation",      "animation-time", "variant",        "camera",      "memory",    "threads",
-    "texture-memory", "allow-external", "progress",       "quiet"};
+    "probe",     "probe-mapping", "probe-rotation", "probe-scale",    "samples",
+    "seed",      "max-depth",     "ao-distance",    "strategy",       "light-from",
+    "sun-angle", "light-units",   "animation",      "animation-time", "variant",
+    "camera",    "memory",        "threads",        "texture-memory", "allow-external"};
 
 // Options that decide the picture, and none about its light, which comes from everywhere: at
 // vertices, and the further ones at pixels.
 constexpr std::string_view kOfVertices[] = {
-    "samples",        "seed",           "max-depth", "glass-shadows", "single-sided", "light-units",
-    "animation",      "animation-time", "variant",   "camera",        "memory",       "threads",
-    "texture-memory", "allow-external", "progress",  "quiet"};
+    "samples",     "seed",      "max-depth",      "glass-shadows", "single-sided",
+    "light-units", "animation", "animation-time", "variant",       "camera",
+    "memory",      "threads",   "texture-memory", "allow-external"};
 constexpr std::string_view kOfPixels[] = {"size",
                                           "max-diffuse-depth",
                                           "max-specular-depth",
@@ -165,10 +165,6 @@ bool isOptionOf(SceneCommand command, const Setting& setting) {
     default:
       return true;
   }
-}
-
-ProgressStyle SceneOptions::progress() const {
-  return progressStyle({.quiet = quiet(), .progress = settings.get<bool>("progress")});
 }
 
 void addSceneOptions(Command app, SceneOptions& options, SceneCommand command,

@@ -8,7 +8,6 @@
 #include "command.h"
 #include "front/scene_file.h"
 #include "front/settings.h"
-#include "progress_bar.h"
 
 namespace chromeball {
 
@@ -17,9 +16,6 @@ struct LoadedScene;
 struct SceneOptions {
   std::string scene;
   Settings settings;  // from the command line; locations are option names ("--size")
-
-  bool quiet() const { return settings.get<bool>("quiet"); }
-  ProgressStyle progress() const;
 };
 
 // The command that the options are for: compare varies some settings itself, and does not need
