@@ -48,8 +48,6 @@ void addWarning(Messages& messages, fmt::format_string<Args...> format, Args&&..
   messages.push_back(makeWarning(format, std::forward<Args>(args)...));
 }
 
-// Merges many messages of a kind into one.
-
 // The messages for a terminal: where more than three differ only in numbers and in quoted names,
 // only the first, with a count of the others.
 Messages condensed(const Messages& messages);
