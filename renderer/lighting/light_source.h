@@ -95,12 +95,13 @@ class LightSource {
     return false;
   }
 
-  // Whether sample() takes one sample at most, which is not a delta.
+  // Whether sample() takes one sample at most, which is not a delta: the shadow rays of several
+  // paths then form packets.
   virtual bool takesOneSample() const { return sampleMany({}, {}); }
 
   // Whether a guide may choose a direction in place of the samples that are no deltas
   // (render/guide_training.h).
-  virtual bool canBeGuided() const { return takesOneSample(); }
+  virtual bool canBeGuided() const { return sampleMany({}, {}); }
 
   // One direction that light comes from, drawn from two numbers, whatever the point: for paths that
   // start at the light. Its pdf is 0 if there is none. Returns false if there are no such paths.

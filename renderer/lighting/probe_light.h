@@ -34,6 +34,7 @@ class Uniform : public ProbeLight {
   Escaped escaped(const LightPoint& point, const vec3& wi) const override {
     return {probe_.radiance(wi), glm::dot(point.normal, wi) > 0 ? 0.5f * kInvPi : 0};
   }
+  bool takesOneSample() const override { return true; }
 };
 
 // `bsdf`: no light samples; BSDF samples find the probe (HDRI book, section 9.5).

@@ -23,6 +23,7 @@ class Product : public ProbeLight {
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
   Escaped escaped(const LightPoint& point, const vec3& wi) const override;
+  bool takesOneSample() const override { return true; }
 
   // The sample from two numbers in [0, 1); pdf 0 for a black probe.
   DirectionSample sampleDirection(const LightPoint& point, double u, double v) const;

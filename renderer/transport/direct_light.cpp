@@ -157,8 +157,16 @@ Rgb DirectLight::probe(const Vertex& vertex, PathContext& context) const {
   return sum;
 }
 
+DirectionSample DirectLight::sampleOfStrategy(const LightPoint& point, PathContext& context) const {
+  std::vector<DirectionSample>& samples = context.lightSamples;
+  samples.clear();
+  lighting_.sample(point, context.sampler, samples);
+  return samples.empty() ? DirectionSample{} : samples.front();
+}
+
 void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
                         PathContext& context) const {
+  if (!light.isDrawn) light.sample = sampleOfStrategy(vertex.point, context);
   const bool guided = guideChooses(vertex, context);
   DirectionTree::Sample chosen{light.sample.wi, light.sample.pdf};
   if (guided) chosen = vertex.region->tree().sample(context.sampler.get2(dimension::kLight));

@@ -29,8 +29,8 @@ struct Vertex {
 
 // Light from the probe at a vertex, for paths that are traced together (integrator.h).
 struct DeferredLight {
-  DirectionSample
-      sample{};  // input: the strategy's light sample; pdf 0: none. Output: the one taken
+  bool isDrawn = false;      // input: `sample` is the strategy's, with a pdf of 0 for none
+  DirectionSample sample{};  // output: the one taken
   bool hasShadowRay = false;
   Ray shadowRay{};       // output
   Rgb radiance{0};       // at the camera if nothing blocks the shadow ray
@@ -58,7 +58,7 @@ class DirectLight {
 
   // Light from the probe, by the strategy's samples; broad lobes only.
   Rgb probe(const Vertex& vertex, PathContext& context) const;
-  // The same, up to the shadow ray, for a given sample of the strategy.
+  // The same, up to the shadow ray, for a strategy that takes one sample.
   void defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
              PathContext& context) const;
   // The second part of defer() where light.region is set. `found`: what
@@ -82,6 +82,8 @@ class DirectLight {
   static LightSample ofStrategy(const Vertex& vertex, const DirectionSample& own);
   static LightSample ofGuide(const GuideRegion& region, const DirectionTree::Sample& sample,
                              const LightSource::Escaped& found);
+  // The one sample of a strategy that takes no more; its pdf is 0 if there is none.
+  DirectionSample sampleOfStrategy(const LightPoint& point, PathContext& context) const;
   Rgb weighted(const DirectionSample& light, const BsdfValue& bsdf) const;
   void addToGroups(std::optional<size_t> source, const LightPoint& point,
                    const DirectionSample& light, const Rgb& weight, PathContext& context) const;

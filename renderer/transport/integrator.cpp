@@ -111,6 +111,7 @@ void PathBatch::drawLightSamples(Task& task) {
     const PixelSampler& sampler = task.context.sampler;
     numbers_.add({sampler.bits(dimension::kLight), sampler.bits(dimension::kLight + 1)});
   }
+  const bool takesOne = task.lighting().takesOneSample();
   const bool drawn =
       task.lighting().sampleMany(numbers_.all(), std::span(samples_).first(numbers_.size));
   for (size_t k = 0; k < active_.size; ++k) {
@@ -119,8 +120,9 @@ void PathBatch::drawLightSamples(Task& task) {
     prefetchVertices(task.scene(), task.scene().instances[hit.instance], hit.triangle);
     lights_[i].hasShadowRay = false;
     lights_[i].region = nullptr;
+    lights_[i].isDrawn = drawn;
     lights_[i].sample = samples_[k];
-    paths_[i].deferred = drawn ? &lights_[i] : nullptr;
+    paths_[i].deferred = takesOne ? &lights_[i] : nullptr;
   }
 }
 
