@@ -142,7 +142,8 @@ std::string_view nearestName(std::string_view name, const std::vector<std::strin
     const auto [shorter, longer] = std::minmax({name.size(), candidate.size()});
     if ((longer - shorter) * 2 > longer) continue;  // the distance is at least the difference
     const int distance = editDistance(lowerCase(name), lowerCase(candidate));
-    if (size_t(distance) * 2 > longer) continue;
+    const size_t dashes = candidate.starts_with("--") ? 2 : 0;  // of options, which all have them
+    if (size_t(distance) * 20 > (longer - dashes) * 9) continue;
     if (!nearest.empty() && distance >= nearestDistance) continue;
     nearest = candidate;
     nearestDistance = distance;

@@ -76,7 +76,7 @@ std::vector<Setting> cameraRows() {
       {.key = "view",
        .argument = "AZIMUTH[,ELEVATION[,ROLL]]",
        .type = Numbers,
-       .form = "one angle, two or three",
+       .form = "one angle, two or three (front 0,0; right 90,0; left -90,0; above 0,90)",
        .counts = {1, 2, 3},
        .range = {.min = -360, .max = 360},
        .unit = "degrees",

@@ -154,19 +154,20 @@ std::string headingOf(std::string_view name) {
 }
 
 // What the unknown key of a section may mean: one of this section, or of another.
-std::string hintOn(std::string_view key, std::string_view section,
+std::string hintOn(std::string_view key, bool isTable, std::string_view section,
                    const std::vector<std::string_view>& known) {
   const bool isTop = section.empty() && std::ranges::count(known, "render") > 0;
   if (!isTop && (section.empty() || headingOf(section).starts_with("[[")))
     return didYouMean(key, known);  // a list, whose words have meanings of their own
   const Setting* meant = settingCalled(key);
   const bool isKey = meant && !meant->key.empty();
+  if (isKey && isTable) return fmt::format("did you mean {}?", headingOf(meant->section));
   if (isKey && meant->section == section) return fmt::format("did you mean `{}`?", meant->key);
   if (isKey) return fmt::format("did you mean `{}` in {}?", meant->key, headingOf(meant->section));
   if (const auto place = placeOf(key); !place.empty()) return std::string(place);
   const auto& table = settingTable();
   const auto same = std::ranges::find(table, key, &Setting::key);
-  if (same == table.end() || !nearestName(key, known).empty()) return didYouMean(key, known);
+  if (same == table.end()) return didYouMean(key, known);
   return fmt::format("did you mean `{}` in {}?", key, headingOf(same->section));
 }
 
@@ -176,7 +177,8 @@ void Section::checkKeys(const std::vector<std::string_view>& known) const {
   for (const auto& [key, node] : table_)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       failAt(locationIn(file_, key), "unknown key `{}`{}; {}", printableName(key.str()),
-             name_.empty() ? "" : " in " + heading(), hintOn(key.str(), name_, known));
+             name_.empty() ? "" : " in " + heading(),
+             hintOn(key.str(), node.is_table(), name_, known));
 }
 
 Entry Section::required(std::string_view key) const {

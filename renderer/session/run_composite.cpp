@@ -172,8 +172,9 @@ void placeGround(const RenderDescription& description, LoadedScene& loaded) {
   const double depth = double(ground.height) - double(objects.min.y);
   if (depth > 1e-3 * glm::length(objects.size()))
     addWarning(loaded.messages,
-               "{}: the model reaches {:.3g} m below the ground; move it, or give `ground_height`",
-               location, depth);
+               "{}: the model reaches {:.3g} m below the ground; move it, or give `ground_height`, "
+               "here {:.3g}",
+               location, depth, composite.groundHeight - depth);
   addGround(loaded.scene, ground, composite.entry.groundReflectance.value_or(kTypicalGround));
 }
 

@@ -105,7 +105,7 @@ std::vector<PairResult> comparePairs(const Study& study, const RenderStore& stor
   std::vector<std::pair<std::string, std::vector<Image>>> sets;
   for (const StrategyResult& strategy : results.strategies)
     if (const Cell* cell = budget && strategy.unbiased ? findCell(strategy, *budget) : nullptr;
-        cell && cell->error.relMse.mean < kMaxNoiseOfPairs)
+        cell && hasSampledAllLight(*cell))
       sets.emplace_back(strategy.name, images(loadRepeats(store, strategy.name, *budget)));
   for (size_t i = 0; i < sets.size(); ++i)
     for (size_t j = i + 1; j < sets.size(); ++j)
@@ -138,6 +138,17 @@ std::vector<std::string> warningsOf(const Study& study, const StudyResults& resu
         "subtracted, but the confidence intervals of small errors are wide; give the "
         "reference more samples.",
         100 * worst, where));
+  std::vector<std::string> rare;
+  if (const std::optional<Budget> budget = largestCommonBudget(study, results))
+    for (const StrategyResult& strategy : results.strategies)
+      if (const Cell* cell = findCell(strategy, *budget);
+          cell && strategy.unbiased && !hasSampledAllLight(*cell))
+        rare.push_back(strategy.name);
+  if (!rare.empty())
+    warnings.push_back(fmt::format(
+        "Single bright samples may make up most of the error of {}: bias, efficiency and verdict "
+        "are then those of a few repeats. Give more samples or repeats.",
+        fmt::join(rare, ", ")));
   if (invalid > 0)
     warnings.push_back(
         fmt::format("{:.0f} invalid samples (NaN, infinite or negative) were ignored.", invalid));

@@ -46,9 +46,13 @@ struct PairResult {
   Agreement agreement;
 };
 
-// Unbiased strategies are compared for the largest common budget if their relMSE is at most this. A
-// strategy above it has not yet sampled all light, so that its variance is underestimated.
+// Unbiased strategies are compared for the largest common budget if their relMSE, at the upper end
+// of its interval, is at most this. A strategy above it has not yet sampled all light, so that its
+// variance is underestimated.
 inline constexpr double kMaxNoiseOfPairs = 0.25;
+inline bool hasSampledAllLight(const Cell& cell) {
+  return cell.error.relMse.high() < kMaxNoiseOfPairs;
+}
 
 struct StudyResults {
   Reference reference;

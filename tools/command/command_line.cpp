@@ -145,7 +145,7 @@ void addVerbosity(CLI::App& app) {
       command->add_flag("--progress", verbosity().progress,
                         "show the progress bar also if standard error is not a terminal");
       command->add_flag("--quiet", verbosity().quiet,
-                        "print nothing but warnings, errors and what --json prints");
+                        "print only warnings and errors, and JSON that was asked for");
     }
   }
 }

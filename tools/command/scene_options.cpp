@@ -82,8 +82,8 @@ constexpr std::string_view kOfPixels[] = {"size",
 
 // What the brief help shows.
 constexpr auto kCommon = std::to_array<const char*>(
-    {"output", "probe", "probe-rotation", "probe-scale", "camera", "size", "quality", "time",
-     "noise", "samples", "denoise", "exposure", "tonemap", "aov", "transparent"});
+    {"output", "probe", "probe-rotation", "probe-scale", "view", "zoom", "ground", "frames",
+     "turntable", "shadow-catcher", "size", "quality", "time", "exposure", "aov"});
 
 bool isList(const Setting& setting) {
   return setting.type == SettingType::Choices || setting.type == SettingType::Files;

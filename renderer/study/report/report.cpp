@@ -203,14 +203,15 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
                        "are of log error against log samples: -1 for independent samples.",
                        at, results.baseline)));
   fill(page, "table", resultsHtml(study, results));
-  fill(page, "pairsNote",
-       escaped(fmt::format(
-           "Unbiased strategies must agree up to noise. The test is Welch's t-test on each tile of "
-           "{0} x {0} pixels with {1}; p is the probability of the largest difference of a tile if "
-           "there is only noise, corrected for the number of tiles (Sidak). By chance one of "
-           "twenty pairs has p below 0.05. Strategies with a relMSE above {2:g} are excluded, "
-           "because they have not sampled all light yet.",
-           Agreement::kTile, at, kMaxNoiseOfPairs)));
+  fill(
+      page, "pairsNote",
+      escaped(fmt::format(
+          "Unbiased strategies must agree up to noise. The test is Welch's t-test on each tile of "
+          "{0} x {0} pixels with {1}; p is the probability of the largest difference of a tile if "
+          "there is only noise, corrected for the number of tiles (Sidak). By chance one of "
+          "twenty pairs has p below 0.05. Strategies whose relMSE may be above {2:g} are excluded, "
+          "because they have not sampled all light yet.",
+          Agreement::kTile, at, kMaxNoiseOfPairs)));
   fill(page, "pairs", pairsHtml(results));
   std::string probes;
   for (const auto& [name, directions] : scene.directions) probes += dots(name, directions);
