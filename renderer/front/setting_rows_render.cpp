@@ -244,7 +244,7 @@ std::vector<Setting> outputRows() {
        .type = Numbers,
        .form = "a number, or three",
        .counts = {1, 3},
-       .range = kNotNegative,
+       .range = kPositive,
        .unit = "kelvin",
        .absent = "6504",
        .help = "The light that is white in a .png: the temperature of a black body, 2000 to 25000, "

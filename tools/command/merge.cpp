@@ -2,8 +2,10 @@
 // chromeball merge PART... -o OUT: puts shards and crops of a render together.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 
+#include "base/file.h"
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/text.h"
@@ -19,6 +21,7 @@
 #include "progress_bar.h"
 #include "render_hints.h"
 #include "session/image_header.h"
+#include "session/meter_exposure.h"
 #include "session/render_report.h"
 
 namespace chromeball {
@@ -49,13 +52,6 @@ Metadata wholeMetadata(const PartSet& parts) {
   return metadata;
 }
 
-// The exposure is the parts' unless it was given; of a composite they have none.
-DisplayTransform displayOf(const MergeArguments& arguments, const Metadata& ofParts) {
-  auto [transform, choosesExposure] = planDisplay(arguments.display);
-  if (choosesExposure) transform.exposure = exposureIn(ofParts).value_or(0);
-  return transform;
-}
-
 void run(const MergeArguments& arguments) {
   for (const std::string& output : arguments.outputs) checkWritable(output);
   checkDistinct(arguments.outputs, arguments.parts);
@@ -67,7 +63,9 @@ void run(const MergeArguments& arguments) {
       whole.part.plan, whole.result, [&](double fraction) { bar.update(fraction); }, never);
   finished.image.metadata = sampleMetadata(finished, whole.result);
   finished.image.metadata.merge(wholeMetadata(parts));
-  const DisplayTransform transform = displayOf(arguments, finished.image.metadata);
+  auto [transform, choosesExposure] = planDisplay(arguments.display);
+  // The parts' exposure; of a composite they have none.
+  if (choosesExposure) transform.exposure = exposureIn(finished.image.metadata).value_or(0);
   finished.image.metadata["exposure"] = transform.exposure;
   Messages messages;
   for (const std::string& output : arguments.outputs) {
@@ -76,8 +74,11 @@ void run(const MergeArguments& arguments) {
   }
   addExcluded(whole.result, messages);
   print(messages);
-  say("{} samples per pixel of {} part{}, noise {}: {}\n", whole.result.samplesPerPixel(),
+  const bool shows = std::ranges::any_of(
+      arguments.outputs, [](const std::string& file) { return lowerExtension(file) == ".png"; });
+  say("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samplesPerPixel(),
       parts.paths().size(), parts.paths().size() == 1 ? "" : "s", noiseInWords(finished),
+      shows && choosesExposure ? ", " + chosenInWords(transform.exposure) : "",
       printable(fmt::format("{}", fmt::join(arguments.outputs, ", "))));
 }
 
