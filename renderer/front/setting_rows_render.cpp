@@ -244,11 +244,11 @@ std::vector<Setting> outputRows() {
        .type = Numbers,
        .form = "a number, or three",
        .counts = {1, 3},
-       .range = kPositive,
+       .range = kNotNegative,
        .unit = "kelvin",
        .absent = "6504",
        .help = "The light that is white in a .png: the temperature of a black body, 2000 to 25000, "
-               "or a colour. A lower temperature makes the picture bluer.",
+               "or a colour, all above 0. A lower temperature makes the picture bluer.",
        .effect = Effect::Display,
        .renderOnly = true},
   };
