@@ -50,6 +50,17 @@ TEST(Crop, PixelsHaveTheRadianceOfTheirDirections) {
   }
 }
 
+// Almost all of a plane that is nearly a hemisphere's lies at its border; a pixel takes no more
+// samples than there are texels in it.
+TEST(Crop, ViewsOfNearlyAHemisphere) {
+  Image map(64, 32, 3);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 64; ++x) map.setRgb(x, y, Rgb(1));
+  const Image image = crop(map, PinholeView{{}, 179.9, {8, 8}});
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) EXPECT_NEAR(image.rgb(x, y).x, y < 4 ? 1 : 0, 0.1) << y;
+}
+
 TEST(Crop, PixelsInTheMiddleAreAsWideAsTexels) {
   const Image map(512, 256, 3);
   const PinholeView view{{}, 50, {100, rowsOfCrop(map, 50)}};

@@ -205,14 +205,15 @@ TEST(LightGroups, NamesAreUniqueAndShort) {
   const LitScene scene;
   const std::string longName(300, 'x');
   std::string lamps, lamp = "type = 'point'\nposition = [0.1, 0.2, 0.5]\nintensity = 0.3\n";
-  for (const std::string& name : {longName + "1", longName + "2", std::string("a"),
-                                  std::string("a_2"), std::string("a"), std::string("a")})
+  for (const std::string& name :
+       {longName + "1", longName + "2", std::string("a"), std::string("a_2"), std::string("a"),
+        std::string("a"), std::string("probe.suns")})
     lamps += "[[light]]\nname = '" + name + "'\n" + lamp;
   scene.write("names.toml", lamps);
   Strings names = groupsOf(render(scene, {"--aov", "light_groups"}, "names.toml"));
   const std::string kept(200, 'x');
-  EXPECT_EQ(names, (Strings{"a", "a_2", "a_3", "a_4", "node1", "probe", "probe.suns", "unlit", kept,
-                            kept + "_2"}));
+  EXPECT_EQ(names, (Strings{"a", "a_2", "a_3", "a_4", "node1", "probe", "probe.suns", "probe_suns",
+                            "unlit", kept, kept + "_2"}));
 }
 
 // A plane under a constant probe (E = pi L) and one light: where the light is blocked, the factor

@@ -166,7 +166,7 @@ void PixelRenderer::traceSamples(PixelWorker& worker) const {
   const auto cameras = std::span(worker.cameras).first(worker.sampleCount);
   std::array<Sample, PixelWorker::kMaxSamples> samples;
   traceCameraRays(worker.context.sampler, cameras);
-  std::ranges::fill(worker.layers, Rgb(0));
+  std::fill_n(worker.layers.begin(), cameras.size() * layerCount_, Rgb(0));
   integrator_.sampleMany(cameras, worker.context, samples);
   for (size_t k = 0; k < cameras.size(); ++k)
     add(worker, worker.blocks[worker.blockOf[k]], cameras[k], samples[k]);

@@ -45,12 +45,6 @@ class WatchedRender : public RenderControl {
   std::atomic<double> noise_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-double meanCount(const Image& counts) {
-  double sum = 0;
-  for (const float count : counts.texels) sum += double(count);
-  return sum / double(std::max<size_t>(counts.texels.size(), 1));
-}
-
 }  // namespace
 
 class Session::Implementation : private WorkMonitor {
@@ -198,7 +192,7 @@ void Session::Implementation::render() {
   if (!result.render.interrupted) progress(1);
   result.image.metadata = imageMetadata(*loaded_, result, result.render, result.seconds);
   say(result.messages);
-  const double samples = meanCount(result.render.film.sampleCounts());
+  const double samples = result.render.film.meanSampleCount();
   if (samples == 0) return;
   seconds_.render = result.seconds;
   std::string report = jsonText(statistics(*loaded_, result, seconds_));

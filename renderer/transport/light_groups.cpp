@@ -16,30 +16,37 @@ std::string shortened(const std::string& name) {
   return name.substr(0, end);
 }
 
+// Without the characters that separate layers and gains.
+std::string layerName(const std::string& name) {
+  std::string layer = name.empty() ? "light" : shortened(name);
+  for (char& c : layer)
+    if (c == '.' || c == ',' || c == '=' || uint8_t(c) <= ' ' || c == 127) c = '_';
+  return layer;
+}
+
 }  // namespace
 
 LightGroups::LightGroups(const World& world, const LightSource& lighting)
     : scene_(world.scene), ofNode_(world.scene.nodeNames.size(), -1) {
   const Scene& scene = world.scene;
-  const auto addSource = [&](const LightSource& source) {
-    for (const std::string& name : source.groups()) add(name);
+  const auto addSource = [&](const LightSource& source, bool isStrategy) {
+    // The suns of the probe are a layer below its own; a lamp of that name is none.
+    for (const std::string& name : source.groups())
+      add(isStrategy && name == kSunsGroup ? name : layerName(name));
     ends_.push_back(names_.size());
   };
-  addSource(lighting);
-  for (const auto& source : world.sources.all) addSource(*source);
+  addSource(lighting, true);
+  for (const auto& source : world.sources.all) addSource(*source, false);
   for (const Instance& instance : scene.instances) {
     const Material& material = scene.materials[size_t(instance.material)];
     if (!material.emits()) continue;
     int& group = material.unlit ? unlit_ : ofNode_[size_t(instance.node)];
-    if (group < 0) group = add(material.unlit ? "unlit" : scene.nodeNames[size_t(instance.node)]);
+    if (group < 0)
+      group = add(material.unlit ? "unlit" : layerName(scene.nodeNames[size_t(instance.node)]));
   }
 }
 
-int LightGroups::add(const std::string& name) {
-  std::string base = name.empty() ? "light" : shortened(name);
-  if (base != kSunsGroup)  // a layer below the probe's own
-    for (char& c : base)
-      if (c == '.' || c == ',' || c == '=' || uint8_t(c) <= ' ' || c == 127) c = '_';
+int LightGroups::add(const std::string& base) {
   std::string unique = base;
   for (int& count = taken_[base]; ++count > 1;) {
     unique = base + "_" + std::to_string(count);

@@ -42,7 +42,7 @@ class LightGroups {
   }
 
  private:
-  int add(const std::string& name);
+  int add(const std::string& base);
 
   const Scene& scene_;
   std::vector<std::string> names_;
