@@ -196,6 +196,22 @@ TEST_F(SlowCommandCompare, referenceFromAFileAndTimes) {
     EXPECT_EQ(std::string(warning).find("assumed to be exact"), std::string::npos) << warning;
 }
 
+// A small sun that uniform samples rarely meet: their pair is not tested, and the reason is told.
+TEST_F(SlowCommandCompare, rareBrightSamplesAreTold) {
+  Image sun = constantProbe({64, 32}, Rgb(0.01f));
+  sun.setRgb(1, 12, Rgb(3000));
+  writeImage(folder_ / "probe.exr", sun);
+  ASSERT_EQ(runCommand(command({"--strategies", "uniform,importance", "--samples", "4",
+                                "--reference-samples", "256"}))
+                .status,
+            0);
+  const json all = results();
+  std::string told;
+  for (const json& warning : all["warnings"]) told += std::string(warning);
+  EXPECT_NE(told.find("most of the error of uniform:"), std::string::npos) << told;
+  EXPECT_TRUE(all["agreement"].empty());
+}
+
 TEST_F(SlowCommandCompare, badInputIsRejected) {
   const auto expectInputError = [&](const std::vector<std::string>& arguments, const char* reason) {
     expectError(command(arguments), reason);
