@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lighting/probe_light.h"
 #include "paths.h"
 #include "probe/synth.h"
 #include "scene/gltf/load_gltf.h"
@@ -25,16 +26,14 @@ class OneAtATime : public Integrator {
   PathIntegrator single_;
 };
 
-void expectSame(const NamedScene& named, const Camera& camera, const std::string& strategy,
+void expectSame(const NamedScene& named, const Camera& camera, const LightSource& lighting,
                 const RenderSettings& settings, const LightGuide* guide = nullptr,
                 const CausticGuide* caustics = nullptr) {
   const World world(named.scene, {}, allTables());
-  const Probe probe(named.probe);
-  const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
   PathSettings path = settings.path();
   path.guide = guide;
   path.caustics = caustics;
-  const PathTracer tracer(world, *lighting, path);
+  const PathTracer tracer(world, lighting, path);
   const std::atomic<bool> stop = false;
   const auto rendered = [&](const Integrator& integrator) {
     return render(
@@ -42,7 +41,6 @@ void expectSame(const NamedScene& named, const Camera& camera, const std::string
   };
   const RenderResult together = rendered(PathIntegrator(tracer));
   const RenderResult single = rendered(OneAtATime(tracer));
-  SCOPED_TRACE(std::string(named.name) + ", " + strategy);
 
   // Packets may find another triangle for a ray through an edge, or at a silhouette.
   constexpr double kFraction = 1e-4;
@@ -64,6 +62,15 @@ void expectSame(const NamedScene& named, const Camera& camera, const std::string
   EXPECT_LE(differing, b.width * b.height / 500);
 }
 
+void expectSame(const NamedScene& named, const Camera& camera, const std::string& strategy,
+                const RenderSettings& settings, const LightGuide* guide = nullptr,
+                const CausticGuide* caustics = nullptr) {
+  SCOPED_TRACE(std::string(named.name) + ", " + strategy);
+  const Probe probe(named.probe);
+  const auto lighting = makeStrategy(strategy, probe, settings.mis, "test");
+  expectSame(named, camera, *lighting, settings, guide, caustics);
+}
+
 Camera cameraAbove() {
   return Camera::lookAt({0, 1.6f, 3}, {0, 0.5f, 0}, {0, 1, 0}, glm::radians(50.0f));
 }
@@ -74,6 +81,55 @@ TEST(PathBatch, FindsWhatSinglePathsFind) {
   for (const NamedScene& named : threeScenes())
     for (const char* strategy : {"importance", "suns", "median-cut:8", "bsdf"})
       expectSame(named, cameraAbove(), strategy, settings);
+}
+
+// Light from one side, which the strategy seldom samples.
+LightGuide someGuide() {
+  std::vector<LightRecord> records;
+  for (uint64_t i = 0; i < 20'000; ++i) {
+    const auto number = [&](uint64_t purpose) { return toUnit(uint32_t(hash(i, purpose))); };
+    const vec3 normal = squareToUniformSphere({number(1), number(2)});
+    const vec3 direction = glm::normalize(vec3(1 + number(3), number(4), number(5)));
+    const vec3 position(4 * number(6) - 2, 2 * number(7), 4 * number(8) - 2);
+    records.push_back({position, normal, direction, 1, 1, 1e-3f, 0.1f});
+  }
+  LightGuide guide;
+  guide.learn(std::move(records));
+  return guide;
+}
+
+// `uniform` with its samples taken for many vertices at once.
+class UniformAtMany : public Uniform {
+ public:
+  using Uniform::Uniform;
+  size_t batch() const override { return 100; }
+  void sampleAt(std::span<const LightPoint> points, std::span<const glm::uvec2> numbers,
+                std::span<DirectionSample> out) const override {
+    EXPECT_LE(points.size(), batch());
+    largest = std::max<size_t>(largest, points.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+      const vec2 u(toUnit(numbers[i].x), toUnit(numbers[i].y));
+      const vec3 wi = Frame(points[i].normal).toWorld(squareToUniformHemisphere(u));
+      out[i] = {wi, probe_.radiance(wi) * (2 * kPi), 0.5f * kInvPi};
+    }
+  }
+  void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const override {
+    EXPECT_LE(rays.size(), batch());
+    Uniform::escapedMany(rays, out);
+  }
+  mutable std::atomic<size_t> largest = 0;
+};
+
+TEST(PathBatch, SamplesOfManyVerticesAreThoseOfEach) {
+  const LightGuide guide = someGuide();
+  for (const NamedScene& named : threeScenes()) {
+    SCOPED_TRACE(named.name);
+    const Probe probe(named.probe);
+    const UniformAtMany lighting(probe);
+    for (const LightGuide* g : {static_cast<const LightGuide*>(nullptr), &guide})
+      expectSame(named, cameraAbove(), lighting, smallRender(40, 30, 37, 5), g);
+    EXPECT_GT(lighting.largest, PathBatch::kMaxPaths);
+  }
 }
 
 TEST(PathBatch, AlsoAdaptivelyAndWithDeepPaths) {
@@ -92,21 +148,6 @@ TEST(SlowPathBatch, AlsoThroughGlass) {
   ASSERT_FALSE(named.scene.cameras.empty());
   const Camera camera = named.scene.cameras.front();
   expectSame(named, camera, "importance", smallRender(60, 45, 32, 8));
-}
-
-// Light from one side, which the strategy seldom samples.
-LightGuide someGuide() {
-  std::vector<LightRecord> records;
-  for (uint64_t i = 0; i < 20'000; ++i) {
-    const auto number = [&](uint64_t purpose) { return toUnit(uint32_t(hash(i, purpose))); };
-    const vec3 normal = squareToUniformSphere({number(1), number(2)});
-    const vec3 direction = glm::normalize(vec3(1 + number(3), number(4), number(5)));
-    const vec3 position(4 * number(6) - 2, 2 * number(7), 4 * number(8) - 2);
-    records.push_back({position, normal, direction, 1, 1, 1e-3f, 0.1f});
-  }
-  LightGuide guide;
-  guide.learn(std::move(records));
-  return guide;
 }
 
 TEST(PathBatch, AlsoWithAGuide) {

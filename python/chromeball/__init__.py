@@ -20,8 +20,9 @@ from ._probe import Lights, Probe
 from ._render import Session, keywords, render
 from ._result import Result
 from ._scene import Material, Scene, load
+from ._strategy import Points, Strategy
 
-__all__ = ["Camera", "InputError", "Lights", "Material", "Probe", "RenderWarning", "Result", "RunError",
-           "Scene", "Session", "__version__", "keywords", "load", "render"]
+__all__ = ["Camera", "InputError", "Lights", "Material", "Points", "Probe", "RenderWarning", "Result", "RunError",
+           "Scene", "Session", "Strategy", "__version__", "keywords", "load", "render"]
 
 _atexit.register(_core.cancel_all)

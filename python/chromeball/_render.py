@@ -14,6 +14,7 @@ from ._errors import InputError
 from ._probe import Probe
 from ._result import Result, result_of
 from ._scene import Scene
+from ._strategy import CheckedStrategy
 
 SceneLike = Union[Scene, str, "os.PathLike[str]", dict[str, Any]]
 ProbeLike = Union[Probe, str, "os.PathLike[str]", None]
@@ -36,6 +37,9 @@ def _plan(caller: str, scene: SceneLike, probe: ProbeLike, camera: Camera | None
         raise InputError(f"{caller}: camera is a {type(camera).__name__}; it should be a chromeball.Camera")
     if camera is not None and camera.size is not None:
         settings.setdefault("size", camera.size)
+    strategy = None
+    if not isinstance(settings.get("strategy", ""), str):
+        strategy = CheckedStrategy(settings.pop("strategy"))
     geometry = None
     source: Any
     if isinstance(scene, Scene):
@@ -47,7 +51,7 @@ def _plan(caller: str, scene: SceneLike, probe: ProbeLike, camera: Camera | None
     else:
         raise InputError(f"{caller}: scene is a {type(scene).__name__}; it should be a chromeball.Scene, a file or a dict")
     return _core.plan(source, geometry, None if probe is None else probe._map,
-                      None if camera is None else camera.keys, settings, caller)
+                      None if camera is None else camera.keys, settings, strategy, caller)
 
 
 def _bar(stage: str, fraction: float) -> None:
@@ -82,8 +86,8 @@ def render(
     progress: True shows a bar; or it is called with (stage, fraction), from another thread.
 
     Settings have the names of `chromeball render`'s options with underscores (keywords(); docs/scene-file.md): size=(width,
-    height), samples=, time= (seconds), noise= (percent), strategy=, denoise=, layers=[...], seed=, probe_rotation=,
-    transparent=, max_depth=, quality=, threads= and others.
+    height), samples=, time= (seconds), noise= (percent), strategy= (a name, or an object with sample() and pdf():
+    docs/python.md), denoise=, layers=[...], seed=, probe_rotation=, transparent=, max_depth=, quality=, threads= and others.
 
     The same scene and settings give the same bits as the command. Other threads of Python go on meanwhile; Ctrl-C ends the
     render. Throws InputError, RunError; what may spoil the image is a RenderWarning.

@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _arrays
-from ._core import Geometry, Session, check_scene
+from ._core import Geometry, MaterialBsdf, Session, check_scene
 from ._errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 _TEXTURES = ("base_color_texture", "metallic_roughness_texture", "normal_texture", "emission_texture")
 
@@ -34,9 +38,45 @@ class Material:
                 keywords[name] = _arrays.texels(f"Material(): {name}", keywords[name])
         self._keywords = {"metallic": 0.0, **keywords}
         Geometry().add_material(self._keywords)  # checks it
+        self._made: MaterialBsdf | None = None
+
+    def eval(self, wi: Any, wo: Any) -> NDArray[np.float32]:
+        """[N,3] f |cos| for light from `wi` [N,3] that leaves to the viewer in `wo` [N,3]; 0 for perfect mirrors and smooth glass.
+
+        Directions point away from the surface, whose front has the normal +z and the tangent +x, in air. f is without
+        emission and alpha; textures are refused.
+        """
+        return self._bsdf().evaluate(*_directions(wi=wi, wo=wo))[0]
+
+    def pdf(self, wi: Any, wo: Any) -> NDArray[np.float32]:
+        """[N] the pdf, over solid angle, with which sample() finds `wi` [N,3] for `wo` [N,3]."""
+        return self._bsdf().evaluate(*_directions(wi=wi, wo=wo))[1]
+
+    def sample(self, wo: Any, u: Any) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+        """Directions `wi` [N,3], weights f |cos| / pdf [N,3], and pdf [N] for `wo` [N,3], from numbers `u` [N,3] in [0, 1); the
+        third chooses the lobe. The pdf of the only direction of a mirror is 0; where light is absorbed, the weight is."""
+        numbers = _arrays.array("u", u, ("N", 3), "float32")
+        if not ((numbers >= 0) & (numbers < 1)).all():
+            raise InputError("u: should be 0 or above, and below 1")
+        (units,) = _directions(wo=wo)
+        if len(units) != len(numbers):
+            raise InputError(f"u: has the shape {list(numbers.shape)}; it should be [{len(units)},3]")
+        return self._bsdf().sample(units, numbers)
+
+    def _bsdf(self) -> MaterialBsdf:
+        if self._made is None:
+            self._made = MaterialBsdf(self._keywords)
+        return self._made
 
     def __repr__(self) -> str:
         return "Material(" + ", ".join(f"{k}={v!r}" for k, v in self._keywords.items() if k not in _TEXTURES) + ")"
+
+
+def _directions(**named: Any) -> list[NDArray[Any]]:
+    all = [_arrays.directions(name, value) for name, value in named.items()]
+    if len({len(vectors) for vectors in all}) > 1:
+        raise InputError(f"{' and '.join(named)}: have {' and '.join(str(len(v)) for v in all)} directions")
+    return all
 
 
 class Scene:

@@ -37,6 +37,16 @@ ArrayOut<Number> arrayOf(std::vector<Vector> vectors) {
   return {reinterpret_cast<Number*>(kept->data()), {kept->size(), 3}, owner};
 }
 
+// [N], or [N / columns, columns]
+template <class Number>
+ArrayOut<Number> listOf(std::vector<Number> numbers, size_t columns = 1) {
+  auto* kept = new std::vector<Number>(std::move(numbers));
+  const nb::capsule owner(kept,
+                          [](void* p) noexcept { delete static_cast<std::vector<Number>*>(p); });
+  const size_t shape[] = {kept->size() / columns, columns};
+  return {kept->data(), columns == 1 ? size_t(1) : size_t(2), shape, owner};
+}
+
 // [H,W,C], as long as `owner` lives.
 inline nb::ndarray<nb::numpy, const float> viewOf(const Image& image, nb::handle owner) {
   const size_t shape[] = {size_t(image.height), size_t(image.width), size_t(image.channels)};

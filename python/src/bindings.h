@@ -12,8 +12,10 @@ namespace nb = nanobind;
 void bindErrors(nb::module_& m);
 void bindGeometry(nb::module_& m);
 void bindProbe(nb::module_& m);
+void bindMaterialBsdf(nb::module_& m);
 void bindPlan(nb::module_& m);
 void bindResult(nb::module_& m);
 void bindSession(nb::module_& m);
+void bindStrategy(nb::module_& m);
 
 }  // namespace chromeball::python

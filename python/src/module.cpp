@@ -9,7 +9,9 @@ NB_MODULE(_core, m) {
   bindErrors(m);
   bindGeometry(m);
   bindProbe(m);
+  bindMaterialBsdf(m);
   bindPlan(m);
   bindResult(m);
   bindSession(m);
+  bindStrategy(m);
 }

@@ -12,6 +12,7 @@
 #include "front/scene_values.h"
 #include "geometry.h"
 #include "probe_map.h"
+#include "python_light.h"
 #include "values.h"
 
 namespace chromeball::python {
@@ -32,7 +33,8 @@ void keepToMemory(RenderDescription& description) {
 }
 
 Plan planOf(nb::handle scene, const Geometry* geometry, const ProbeMap* probe,
-            const std::optional<Dict>& camera, const Dict& keywords, const std::string& caller) {
+            const std::optional<Dict>& camera, const Dict& keywords, const nb::object& strategy,
+            const std::string& caller) {
   SceneFile file = sceneOf(scene);
   if (camera) replaceCamera(file, tableOf(*camera, "Camera()"), "Camera()");
   Settings settings = keywordSettings(tableOf(keywords, caller), caller);
@@ -44,13 +46,18 @@ Plan planOf(nb::handle scene, const Geometry* geometry, const ProbeMap* probe,
       settings.set("probe.scale", std::vector<double>{s.x, s.y, s.z}, "Probe()");
     }
   }
-  Plan plan{planRender(std::move(file), settings), size_t(settings.get<uint64_t>("threads"))};
+  Plan plan{planRender(std::move(file), settings), size_t(settings.get<uint64_t>("threads")),
+            strategy};
   RenderDescription& description = plan.description;
   keepToMemory(description);
   if (geometry) description.scene = geometry->share();
   if (probe) {
     description.probe.file.reset();
     description.probe.map = probe->map;
+  }
+  if (!strategy.is_none()) {
+    description.lighting.strategy = nb::cast<std::string>(strategy.attr("name"));
+    description.lighting.make = makerOf(strategy);
   }
   if (description.models.empty() && !description.scene)
     throwInput("{}: the scene has no models, and no meshes", caller);
@@ -85,7 +92,8 @@ std::string helpOf(const std::string& keyword) {
 void bindPlan(nb::module_& m) {
   nb::class_<Plan>(m, "Plan", "A render as it was asked for.");
   m.def("plan", planOf, nb::arg("scene"), nb::arg("geometry").none(), nb::arg("probe").none(),
-        nb::arg("camera").none(), nb::arg("keywords"), nb::arg("caller"));
+        nb::arg("camera").none(), nb::arg("keywords"), nb::arg("strategy").none(),
+        nb::arg("caller"));
   m.def("check_scene", checkScene, nb::arg("scene"), nb::arg("name"),
         "Throws InputError for a scene whose keys or values are wrong.");
   m.def("check_camera", checkCamera, nb::arg("camera"), nb::arg("name"),

@@ -26,7 +26,10 @@ using namespace std::chrono_literals;
 class PythonSession {
  public:
   PythonSession(const Plan& plan, nb::object progress)
-      : progress_(std::move(progress)), output_(plan.description.output), threads_(plan.threads) {
+      : progress_(std::move(progress)),
+        strategy_(plan.strategy),
+        output_(plan.description.output),
+        threads_(plan.threads) {
     session_.emplace(
         plan.description,
         SessionCallbacks{
@@ -85,13 +88,16 @@ class PythonSession {
     return resultOf(std::move(image));
   }
   void update(const Plan& plan) {
-    const nb::gil_scoped_release released;
-    const std::lock_guard lock(calls_);
-    session_->update(plan.description);
-    output_ = plan.description.output;
-    threads_ = plan.threads;
-    isStarted_ = false;
-    limit_.reset();
+    {
+      const nb::gil_scoped_release released;
+      const std::lock_guard lock(calls_);
+      session_->update(plan.description);
+      output_ = plan.description.output;
+      threads_ = plan.threads;
+      isStarted_ = false;
+      limit_.reset();
+    }
+    strategy_ = plan.strategy;
   }
   void requestCancel() { session_->requestCancel(); }
   void cancel() {
@@ -109,6 +115,13 @@ class PythonSession {
   }
 
   nb::object& progress() { return progress_; }
+  const nb::object& strategy() const { return strategy_; }
+  // For the garbage collector: the session is not used any more.
+  void clear() {
+    cancel();
+    progress_ = nb::none();
+    strategy_.reset();
+  }
 
   // Before the interpreter ends, whose end the sessions' threads could not call back into.
   static void cancelAll() {
@@ -155,6 +168,7 @@ class PythonSession {
   }
 
   nb::object progress_;
+  nb::object strategy_;  // which the render calls
   OutputDescription output_;
   size_t threads_;
   std::optional<ThreadLimit> limit_;
@@ -166,17 +180,19 @@ class PythonSession {
   std::optional<Session> session_;
 };
 
-// A function that reports progress may refer to its session.
+// A function that reports progress and a strategy may refer to their session.
 int traverse(PyObject* self, visitproc visit, void* arg) {
 #if PY_VERSION_HEX >= 0x03090000
   Py_VISIT(Py_TYPE(self));
 #endif
   if (!nb::inst_ready(self)) return 0;
-  Py_VISIT(nb::inst_ptr<PythonSession>(self)->progress().ptr());
+  auto* session = nb::inst_ptr<PythonSession>(self);
+  Py_VISIT(session->progress().ptr());
+  Py_VISIT(session->strategy().ptr());
   return 0;
 }
 int clear(PyObject* self) {
-  nb::inst_ptr<PythonSession>(self)->progress() = nb::none();
+  nb::inst_ptr<PythonSession>(self)->clear();
   return 0;
 }
 PyType_Slot kSlots[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse)},

@@ -52,6 +52,7 @@ class SurfaceLayers : public Integrator {
                 const Occlusion& occlusion);
 
   Sample sample(const CameraSample& camera, PathContext& context) const override;
+  size_t batch() const override { return picture_.batch(); }
   void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
                   std::span<Sample> samples) const override;
   std::vector<Accumulation> layers() const override { return picture_.layers(); }

@@ -5,6 +5,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "base/progress.h"
 
@@ -36,6 +37,8 @@ void parallelAdaptiveRanges(size_t count, RangeBody body) {
              [&](size_t begin, size_t end) { body(range.begin() + begin, range.begin() + end); });
   });
 }
+
+void withoutOtherWork(const std::function<void()>& body) { tbb::this_task_arena::isolate(body); }
 
 struct ThreadSlots::Slots {
   tbb::enumerable_thread_specific<void*> addresses{nullptr};

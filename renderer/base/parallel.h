@@ -37,6 +37,10 @@ void parallelRanges(size_t count, size_t size, RangeBody body);
 // differs.
 void parallelAdaptiveRanges(size_t count, RangeBody body);
 
+// Calls the body. Loops in it do not run other loops' bodies in this thread meanwhile: those may be
+// of the caller's own kind, which is in the middle of something.
+void withoutOtherWork(const std::function<void()>& body);
+
 // Calls body(i) for each i in [begin, end).
 template <class Index, class Body>
 void parallelFor(Index begin, Index end, const Body& body) {

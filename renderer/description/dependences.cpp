@@ -26,6 +26,7 @@ bool lightsSurfaces(const D& d, const SceneContents& c) {
 }
 // Whether samples of the BSDF find light that the strategy samples too.
 bool samplesAreas(const D& d) {
+  if (d.lighting.make) return true;
   const std::string strategy = strategyOf(d);
   return strategy == "suns" || (strategy != "bsdf" && !hasLights(strategy));
 }

@@ -77,8 +77,8 @@ class LightSource {
   // BSDF-sampled ray from `point` hits. Its radiance is emittedRadiance() (scene/surface.h).
   virtual float pdfOfHit(const LightPoint&, const Surface&, const Instance&) const { return 0; }
 
-  // escaped() for up to kMaxMany rays. Strategies override it where table reads of several rays can
-  // overlap.
+  // escaped() for up to kMaxMany rays, or batch(). Strategies override it where table reads of
+  // several rays can overlap.
   static constexpr size_t kMaxMany = 64;
   struct Escape {
     const LightPoint* point;
@@ -95,9 +95,17 @@ class LightSource {
     return false;
   }
 
+  // sample() for up to batch() vertices of paths that are traced together, from the same bits: for
+  // sources whose calls cost much, and whose samples may depend on the point. Sources that do so
+  // return batch() above 0, and take one sample at most, which is not a delta. A pdf of 0 stands
+  // for no sample. escapedMany() is then called for as many rays.
+  virtual size_t batch() const { return 0; }
+  virtual void sampleAt(std::span<const LightPoint>, std::span<const glm::uvec2>,
+                        std::span<DirectionSample>) const {}
+
   // Whether sample() takes one sample at most, which is not a delta: the shadow rays of several
   // paths then form packets.
-  virtual bool takesOneSample() const { return sampleMany({}, {}); }
+  virtual bool takesOneSample() const { return batch() > 0 || sampleMany({}, {}); }
 
   // Whether a guide may choose a direction in place of the samples that are no deltas
   // (render/guide_training.h).
@@ -112,7 +120,7 @@ class LightSource {
   // Radiance seen by the camera and by mirrors at `origin`, which sample() does not estimate.
   virtual Rgb background(const vec3&, const vec3&) const { return Rgb(0); }
 
-  // background() for up to kMaxMany rays.
+  // background() for up to kMaxMany rays, or batch().
   struct Sight {
     vec3 origin, wi;
   };

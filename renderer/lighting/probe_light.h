@@ -38,7 +38,6 @@ class Uniform : public ProbeLight {
 };
 
 // `bsdf`: no light samples; BSDF samples find the probe (HDRI book, section 9.5).
-
 class BsdfOnly : public ProbeLight {
  public:
   using ProbeLight::ProbeLight;

@@ -42,10 +42,16 @@ PixelRenderer::PixelRenderer(const Integrator& integrator, const World& world, c
 }
 
 PixelWorker PixelRenderer::makeWorker() const {
+  const size_t batch = integrator_.batch();
   return {
       .context = {.sampler = PixelSampler(table_, settings_.seed), .clamp = Clamp(settings_.clamp)},
       .invalid = {},
-      .layers = std::vector<Rgb>(PixelWorker::kMaxSamples * layerCount_)};
+      .cameras = std::vector<CameraSample>(batch),
+      .samples = std::vector<Sample>(batch),
+      .firsts = std::vector<FirstHit>(batch),
+      .layers = std::vector<Rgb>(batch * layerCount_),
+      .blockOf = std::vector<uint32_t>(batch),
+      .blocks = std::vector<SampleBlock>(batch + 1)};
 }
 
 double PixelRenderer::fractionOfHits() const {
@@ -86,7 +92,7 @@ void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uin
 void PixelRenderer::addBlock(PixelWorker& worker, const Beam& beam) const {
   const bool wantsFirst = !result_.aovs.empty() || !result_.features.empty();
   for (uint32_t i = 0; i < worker.blocks[worker.blockCount - 1].run.count; ++i) {
-    if (worker.sampleCount == PixelWorker::kMaxSamples) {
+    if (worker.sampleCount == worker.cameras.size()) {
       traceSamples(worker);
       endBlocks(worker, worker.blockCount - 1);
     }
@@ -121,7 +127,7 @@ void PixelRenderer::endBlocks(PixelWorker& worker, size_t count) const {
   worker.blockCount -= count;
 }
 
-// Generates and traces the camera rays.
+// Generates and traces up to PathBatch::kMaxPaths camera rays.
 void PixelRenderer::traceCameraRays(PixelSampler& sampler, std::span<CameraSample> cameras) const {
   std::array<Ray, PathBatch::kMaxPaths> rays;
   std::array<uint32_t, PathBatch::kMaxPaths> keys;
@@ -164,8 +170,10 @@ float PixelRenderer::wideningOf(const SampleBlock& block, uint32_t index) const 
 
 void PixelRenderer::traceSamples(PixelWorker& worker) const {
   const auto cameras = std::span(worker.cameras).first(worker.sampleCount);
-  std::array<Sample, PixelWorker::kMaxSamples> samples;
-  traceCameraRays(worker.context.sampler, cameras);
+  const auto samples = std::span(worker.samples).first(worker.sampleCount);
+  for (size_t first = 0; first < cameras.size(); first += PathBatch::kMaxPaths)
+    traceCameraRays(worker.context.sampler,
+                    cameras.subspan(first, std::min(PathBatch::kMaxPaths, cameras.size() - first)));
   std::fill_n(worker.layers.begin(), cameras.size() * layerCount_, Rgb(0));
   integrator_.sampleMany(cameras, worker.context, samples);
   for (size_t k = 0; k < cameras.size(); ++k)

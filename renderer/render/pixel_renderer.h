@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "film/film.h"
@@ -74,17 +73,16 @@ struct SampleBlock {
 // The state of a thread that renders pixels. The samples of several pixels are traced together, so
 // that packets and lanes are full however few samples a pixel takes in a pass.
 struct PixelWorker {
-  static constexpr size_t kMaxSamples = PathBatch::kMaxPaths;
-
   PathContext context;
   InvalidSamples invalid;
   // Samples that wait, and their blocks, in the order of the samples.
   size_t sampleCount = 0, blockCount = 0;
-  std::array<CameraSample, kMaxSamples> cameras = {};
-  std::array<FirstHit, kMaxSamples> firsts = {};
+  std::vector<CameraSample> cameras;
+  std::vector<Sample> samples;
+  std::vector<FirstHit> firsts;
   std::vector<Rgb> layers;  // of all samples
-  std::array<uint32_t, kMaxSamples> blockOf = {};
-  std::array<SampleBlock, kMaxSamples + 1> blocks = {};
+  std::vector<uint32_t> blockOf;
+  std::vector<SampleBlock> blocks;
 };
 
 class PixelRenderer {

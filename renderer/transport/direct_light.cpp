@@ -166,28 +166,49 @@ DirectionSample DirectLight::sampleOfStrategy(const LightPoint& point, PathConte
 
 void DirectLight::defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
                         PathContext& context) const {
-  if (!light.isDrawn) light.sample = sampleOfStrategy(vertex.point, context);
-  const bool guided = guideChooses(vertex, context);
-  DirectionTree::Sample chosen{light.sample.wi, light.sample.pdf};
-  if (guided) chosen = vertex.region->tree().sample(context.sampler.get2(dimension::kLight));
+  if (guideChooses(vertex, context)) {
+    deferGuided(vertex, throughput, light, context);
+  } else if (light.waits) {
+    light.waiting = std::make_unique<WaitingVertex>(vertex);
+  } else {
+    if (!light.isDrawn) light.sample = sampleOfStrategy(vertex.point, context);
+    deferDrawn(vertex, throughput, light, context);
+  }
+}
+
+void DirectLight::deferGuided(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
+                              PathContext& context) const {
+  const auto chosen = vertex.region->tree().sample(context.sampler.get2(dimension::kLight));
   if (!(chosen.pdf > 0)) return;
-  const BsdfValue bsdf = vertex.bsdf.evaluate(chosen.direction);
-  if (isBlack(bsdf.fCos)) return;
+  light.bsdf = vertex.bsdf.evaluate(chosen.direction);
+  if (isBlack(light.bsdf.fCos)) return;
   light.hasShadowRay = true;
   light.shadowRay = rayFrom(vertex.surface, chosen.direction);
-  if (guided || context.groups) light.point = vertex.point;
-  if (guided) {
-    light.region = vertex.region;
-    light.treePdf = chosen.pdf;
-    light.bsdf = bsdf;
-    light.throughput = throughput;
-    return;
-  }
+  light.point = vertex.point;
+  light.region = vertex.region;
+  light.treePdf = chosen.pdf;
+  light.throughput = throughput;
+}
+
+void DirectLight::deferDrawn(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
+                             PathContext& context) const {
+  if (!(light.sample.pdf > 0)) return;
+  const BsdfValue bsdf = vertex.bsdf.evaluate(light.sample.wi);
+  if (isBlack(bsdf.fCos)) return;
+  light.hasShadowRay = true;
+  light.shadowRay = rayFrom(vertex.surface, light.sample.wi);
+  if (context.groups) light.point = vertex.point;
   const LightSample sample = ofStrategy(vertex, light.sample);
   light.sample = sample.direction;
   light.scattered = throughput * weighted(sample.direction, bsdf);
   light.radiance = light.scattered * sample.direction.irradiance;
   if (context.records) light.record = record(vertex.point, sample, bsdf);
+}
+
+void DirectLight::completeWaiting(DeferredLight& light, PathContext& context) const {
+  const auto at = std::move(light.waiting);
+  deferDrawn({at->point, at->surface, at->guided, {}, at->region, at->throughput}, at->throughput,
+             light, context);
 }
 
 void DirectLight::complete(const LightSource::Escaped& found, DeferredLight& light,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "lighting/strategy.h"
@@ -27,10 +28,33 @@ struct Vertex {
   const Place* place = nullptr;  // of the path
 };
 
+// A copy of a vertex that waits for its sample of LightSource::sampleAt().
+struct WaitingVertex {
+  explicit WaitingVertex(const Vertex& vertex)
+      : point(vertex.point),
+        surface(vertex.surface),
+        bsdf(vertex.bsdf.bsdf()),
+        guided(vertex.bsdf, bsdf, point.position),
+        region(vertex.region),
+        throughput(vertex.throughput) {
+    point.bsdf = &bsdf;
+  }
+  WaitingVertex(const WaitingVertex&) = delete;
+
+  LightPoint point;
+  Surface surface;
+  Bsdf bsdf;
+  GuidedBsdf guided;
+  const GuideRegion* region;
+  Rgb throughput;
+};
+
 // Light from the probe at a vertex, for paths that are traced together (integrator.h).
 struct DeferredLight {
   bool isDrawn = false;      // input: `sample` is the strategy's, with a pdf of 0 for none
+  bool waits = false;        // input: `sample` is drawn with those of other paths, see `waiting`
   DirectionSample sample{};  // output: the one taken
+  std::unique_ptr<WaitingVertex> waiting;  // output: for completeWaiting()
   bool hasShadowRay = false;
   Ray shadowRay{};       // output
   Rgb radiance{0};       // at the camera if nothing blocks the shadow ray
@@ -61,6 +85,8 @@ class DirectLight {
   // The same, up to the shadow ray, for a strategy that takes one sample.
   void defer(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
              PathContext& context) const;
+  // The second part of defer() where the vertex waits, when its sample has been drawn.
+  void completeWaiting(DeferredLight& light, PathContext& context) const;
   // The second part of defer() where light.region is set. `found`: what
   // LightSource::escaped() returns for light.point and the direction of the shadow ray.
   void complete(const LightSource::Escaped& found, DeferredLight& light,
@@ -78,6 +104,11 @@ class DirectLight {
   };
   // Whether a sample of the guide takes the place of the strategy's, except its delta samples.
   static bool guideChooses(const Vertex& vertex, const PathContext& context);
+  // defer() for a sample of the guide, and for the strategy's.
+  void deferGuided(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
+                   PathContext& context) const;
+  void deferDrawn(const Vertex& vertex, const Rgb& throughput, DeferredLight& light,
+                  PathContext& context) const;
   // The strategy's sample, or one of the guide, with the pdf of the mixture.
   static LightSample ofStrategy(const Vertex& vertex, const DirectionSample& own);
   static LightSample ofGuide(const GuideRegion& region, const DirectionTree::Sample& sample,

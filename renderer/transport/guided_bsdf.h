@@ -17,6 +17,10 @@ class GuidedBsdf {
   // `guide` may be null. `wo`: unit, towards the viewer. The BSDF must outlive this.
   GuidedBsdf(const Bsdf& bsdf, const vec3& position, const vec3& wo, const CausticGuide* guide);
 
+  // The same guide for a copy of the BSDF.
+  GuidedBsdf(const GuidedBsdf& other, const Bsdf& bsdf, const vec3& position)
+      : bsdf_(bsdf), position_(position), lobes_(other.lobes_), fraction_(other.fraction_) {}
+
   const Bsdf& bsdf() const { return bsdf_; }
 
   // The value of the broad lobes, with the pdf of the mixture.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "transport/integrator.h"
 
-#include <cassert>
+#include <algorithm>
 #include <new>
 
 #include "transport/light_groups.h"
@@ -12,6 +12,12 @@ void PathIntegrator::sampleMany(std::span<const CameraSample> cameras, PathConte
                                 std::span<Sample> samples) const {
   const PathBatch& batch = PathBatch::traced(cameras, tracer_, context);
   for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(batch.radiance(i));
+}
+
+size_t Integrator::batch() const { return PathBatch::kMaxPaths; }
+
+size_t PathIntegrator::batch() const {
+  return std::max(PathBatch::kMaxPaths, tracer_.lighting().batch());
 }
 
 struct PathBatch::Task {
@@ -37,11 +43,20 @@ const PathBatch& PathBatch::traced(std::span<const CameraSample> cameras, const 
 
 void PathBatch::add(const CameraSample& camera, const PathState& state,
                     const std::optional<Hit>& hit) {
-  assert(count_ < kMaxPaths);
+  if (count_ == paths_.size()) grow();
   new (&paths_[count_]) PathState(state);  // in place, for a state is large
   cameras_[count_] = &camera;
   hits_[count_] = hit;
   ++count_;
+}
+
+void PathBatch::grow() {
+  const size_t size = std::max(kMaxPaths, 2 * paths_.size());
+  const auto resize = [size](auto&... all) { (all.resize(size), ...); };
+  resize(paths_, cameras_, hits_, lights_, escaped_, backgrounds_, samples_, found_,
+         transmittances_);
+  const auto resizeLists = [size](auto&... all) { (all.items.resize(size), ...); };
+  resizeLists(active_, shaded_, chosen_, rays_, keys_, escapes_, sights_, numbers_, points_);
 }
 
 void PathBatch::follow(const PathTracer& tracer, PathContext& context) {
@@ -52,6 +67,7 @@ void PathBatch::follow(const PathTracer& tracer, PathContext& context) {
     endEscaped(task);
     drawLightSamples(task);
     shade(task);
+    drawWaiting(task);
     completeGuided(task);
     traceShadowRays(task);
     traceNextRays(task);
@@ -74,8 +90,8 @@ void PathBatch::selectGroups(uint32_t path, Task& task) {
 
 void PathBatch::endEscaped(Task& task) {
   Indices& escaped = shaded_;  // not in use yet
-  Indices seen;                // by narrow lobes and the camera
-  escapes_.size = sights_.size = escaped.size = 0;
+  Indices& seen = chosen_;     // by narrow lobes and the camera
+  escapes_.size = sights_.size = escaped.size = seen.size = 0;
   size_t remaining = 0;
   for (const uint32_t i : active_.all()) {
     PathState& path = paths_[i];
@@ -112,8 +128,9 @@ void PathBatch::drawLightSamples(Task& task) {
     numbers_.add({sampler.bits(dimension::kLight), sampler.bits(dimension::kLight + 1)});
   }
   const bool takesOne = task.lighting().takesOneSample();
-  const bool drawn =
-      task.lighting().sampleMany(numbers_.all(), std::span(samples_).first(numbers_.size));
+  const bool waits = task.lighting().batch() > 0;
+  const bool drawn = !waits && task.lighting().sampleMany(numbers_.all(),
+                                                          std::span(samples_).first(numbers_.size));
   for (size_t k = 0; k < active_.size; ++k) {
     const uint32_t i = active_.items[k];
     const Hit& hit = *hits_[i];
@@ -121,13 +138,15 @@ void PathBatch::drawLightSamples(Task& task) {
     lights_[i].hasShadowRay = false;
     lights_[i].region = nullptr;
     lights_[i].isDrawn = drawn;
+    lights_[i].waits = waits;
+    lights_[i].waiting.reset();
     lights_[i].sample = samples_[k];
     paths_[i].deferred = takesOne ? &lights_[i] : nullptr;
   }
 }
 
 void PathBatch::shade(Task& task) {
-  shaded_ = active_;
+  std::swap(shaded_, active_);
   active_.size = 0;
   for (const uint32_t i : shaded_.all()) {
     select(i, task);
@@ -136,11 +155,32 @@ void PathBatch::shade(Task& task) {
   }
 }
 
+// numbers_ are in the order of shaded_.
+void PathBatch::drawWaiting(Task& task) {
+  if (task.lighting().batch() == 0) [[likely]]
+    return;
+  chosen_.size = points_.size = numbers_.size = 0;
+  for (size_t k = 0; k < shaded_.size; ++k) {
+    const uint32_t i = shaded_.items[k];
+    if (!lights_[i].waiting) continue;
+    chosen_.add(i);
+    points_.add(lights_[i].waiting->point);
+    numbers_.add(numbers_.items[k]);
+  }
+  task.lighting().sampleAt(points_.all(), numbers_.all(), std::span(samples_).first(chosen_.size));
+  for (size_t k = 0; k < chosen_.size; ++k) {
+    const uint32_t i = chosen_.items[k];
+    lights_[i].sample = samples_[k];
+    selectGroups(i, task);
+    task.tracer.direct().completeWaiting(lights_[i], task.context);
+  }
+}
+
 void PathBatch::completeGuided(Task& task) {
   const LightGuide* guide = task.tracer.settings().guide;
   if (!guide || guide->empty()) return;
-  Indices guided;
-  escapes_.size = 0;
+  Indices& guided = chosen_;
+  escapes_.size = guided.size = 0;
   for (const uint32_t i : shaded_.all())
     if (lights_[i].region) {
       guided.add(i);
@@ -152,8 +192,8 @@ void PathBatch::completeGuided(Task& task) {
 }
 
 void PathBatch::traceShadowRays(Task& task) {
-  Indices lit;
-  rays_.size = 0;
+  Indices& lit = chosen_;
+  rays_.size = lit.size = 0;
   for (const uint32_t i : shaded_.all())
     if (lights_[i].hasShadowRay) {
       rays_.add(lights_[i].shadowRay);
@@ -177,9 +217,9 @@ void PathBatch::traceShadowRays(Task& task) {
 
 void PathBatch::traceNextRays(Task& task) {
   Indices& traced = shaded_;  // not in use any more
-  Indices last;
+  Indices& last = chosen_;
   size_t remaining = 0;
-  traced.size = rays_.size = keys_.size = 0;
+  last.size = traced.size = rays_.size = keys_.size = 0;
   for (const uint32_t i : active_.all()) {
     select(i, task);
     PathState& path = paths_[i];

@@ -2,7 +2,6 @@
 // Integrators estimate the radiance that arrives along camera rays.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -60,6 +59,9 @@ class Integrator {
     }
   }
 
+  // The number of samples that sampleMany() takes at most.
+  virtual size_t batch() const;
+
   // How the film accumulates each layer (RenderResult::layers).
   virtual std::vector<Accumulation> layers() const { return {}; }
 
@@ -82,6 +84,8 @@ class PathIntegrator : public Integrator {
   void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
                   std::span<Sample> samples) const override;
 
+  size_t batch() const override;
+
  private:
   PathTracer tracer_;
 };
@@ -92,6 +96,7 @@ class PathIntegrator : public Integrator {
 // take a noticeable part of the time.
 class PathBatch {
  public:
+  // Unless LightSource::batch() is larger.
   static constexpr size_t kMaxPaths = LightSource::kMaxMany;
 
   // Traces the paths of camera rays, in a batch of this thread: valid until the next call.
@@ -114,7 +119,7 @@ class PathBatch {
  private:
   template <class T>
   struct List {
-    std::array<T, kMaxPaths> items;
+    std::vector<T> items;
     size_t size = 0;
 
     void add(const T& item) { items[size++] = item; }
@@ -123,23 +128,27 @@ class PathBatch {
   };
   using Indices = List<uint32_t>;  // of paths
 
+  void grow();
+
   struct Task;
   void select(uint32_t path, Task& task);
   void selectGroups(uint32_t path, Task& task);
   void endEscaped(Task& task);
   void drawLightSamples(Task& task);
   void shade(Task& task);
+  void drawWaiting(Task& task);
   void completeGuided(Task& task);
   void traceShadowRays(Task& task);
   void traceNextRays(Task& task);
   void traceLastRays(const Indices& paths, Task& task);
 
   size_t count_ = 0;
-  std::array<PathState, kMaxPaths> paths_;
-  std::array<const CameraSample*, kMaxPaths> cameras_;
-  std::array<std::optional<Hit>, kMaxPaths> hits_;
-  std::array<DeferredLight, kMaxPaths> lights_;
+  std::vector<PathState> paths_;
+  std::vector<const CameraSample*> cameras_;
+  std::vector<std::optional<Hit>> hits_;
+  std::vector<DeferredLight> lights_;
   Indices active_, shaded_;
+  Indices chosen_;  // within each step
 
   // Arguments and results of the functions that take several rays.
   List<Ray> rays_;
@@ -147,11 +156,12 @@ class PathBatch {
   List<LightSource::Escape> escapes_;
   List<LightSource::Sight> sights_;
   List<glm::uvec2> numbers_;
-  std::array<LightSource::Escaped, kMaxPaths> escaped_;
-  std::array<Rgb, kMaxPaths> backgrounds_;
-  std::array<DirectionSample, kMaxPaths> samples_;
-  std::array<std::optional<Hit>, kMaxPaths> found_;
-  std::array<Rgb, kMaxPaths> transmittances_;
+  List<LightPoint> points_;
+  std::vector<LightSource::Escaped> escaped_;
+  std::vector<Rgb> backgrounds_;
+  std::vector<DirectionSample> samples_;
+  std::vector<std::optional<Hit>> found_;
+  std::vector<Rgb> transmittances_;
 };
 
 }  // namespace chromeball
