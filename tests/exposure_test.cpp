@@ -158,6 +158,26 @@ TEST_F(Exposure, OfPartsIsThatOfTheWhole) {
   EXPECT_TRUE(bytes("z.png") == bytes("b.png"));
 }
 
+// It has no plate whose white it must share.
+TEST_F(Exposure, OfAShadowCatcherFollowsItsLight) {
+  const Words catcher{"--shadow-catcher", "ground", "-o", folder_ / "a.png"};
+  const std::string bright = stopsIn(render(catcher).out);
+  writeImage(folder_ / "probe.pfm", grey(8, 4, 12.f / 256));
+  const std::string dim = stopsIn(render(catcher).out);
+  ASSERT_NE(bright, "");
+  ASSERT_NE(dim, "");
+  EXPECT_NEAR(std::stof(dim), std::stof(bright) + 8, 1e-3);
+  const auto part = [&](const std::string& crop, const std::string& name) {
+    render({"--shadow-catcher", "ground", "--guide", "off", "--crop", crop, "-o", folder_ / name});
+  };
+  part("0,0,48,9", "top.exr");
+  part("0,9,48,23", "rest.exr");
+  EXPECT_EQ(
+      stopsIn(
+          run({"merge", folder_ / "top.exr", folder_ / "rest.exr", "-o", folder_ / "m.png"}).out),
+      dim);
+}
+
 TEST_F(Exposure, OfASequenceIsThatOfItsFirstFrame) {
   writeImage(folder_ / "p.0.pfm", grey(8, 4, 12));
   writeImage(folder_ / "p.1.pfm", grey(8, 4, 1));

@@ -20,9 +20,7 @@ bool wants(const D& d, std::string_view layer) {
          std::ranges::any_of(d.settings.aovs, [&](Aov a) { return aovInfo(a).name == layer; });
 }
 bool approximates(const D& d) { return usesEnvironment(d.settings.integrator); }
-bool hasPlate(const D& d) {
-  return d.composite && d.composite->mode != CompositeMode::ShadowCatcher;
-}
+bool hasPlate(const D& d) { return d.hasPlate(); }
 
 // Features that may be in a description.
 constexpr Feature kComposite{"a composite", "", [](const D& d) { return d.composite.has_value(); }};
@@ -209,7 +207,7 @@ constexpr std::array kConflicts = {
     Conflict{kWriteEvery, kTwoPass, kNotTwo},
     Conflict{kPreview, kTwoPass, kNotTwo},
     Conflict{kDisplay, kTwoPass, kNotTwo},
-    Conflict{kAutoExposure, kComposite,
+    Conflict{kAutoExposure, kPlate,
              "a composite is shown as its photograph is; give a number of stops"},
     Conflict{kOrbit, kPlate, "the plate of a composite does not turn"},
     Conflict{kTurntable, kPlate, "the plate of a composite does not turn"},

@@ -149,6 +149,7 @@ struct RenderDescription : SceneParts {
   RunDescription run;
 
   // The scene's name in messages: the first model's.
+  bool hasPlate() const { return composite && composite->mode != CompositeMode::ShadowCatcher; }
   std::string sceneName() const { return models.empty() ? "the scene" : models.front().file; }
 };
 

@@ -258,7 +258,7 @@ RenderDescription planRender(SceneFile scene, const Settings& over) {
   description.output.makesFolders = !over.has("output.file");
   description.run = plannedRun(s);
   if (scene.composite) planComposite(s, std::move(*scene.composite), description);
-  if (description.composite && !s.has("output.exposure"))
+  if (description.hasPlate() && !s.has("output.exposure"))
     description.output.choosesExposure = false;
   checkCapabilities(description);
   return description;
