@@ -136,6 +136,10 @@ class PhotonTracer {
                        sides * kPi *
                        surfaceAlpha(world_.scene, instance, lamp.triangle, lamp.barycentric) /
                        world_.sources.emitters->pdf(instance.material, 1, 1);
+    if (!(flux > 0)) {  // a black texel of an emissive texture
+      ++out.rays;       // so that the budget ends
+      return;
+    }
     follow({rayFrom(surface, direction), flux, {0, 0, 1}, hash(lamp.instance)}, nullptr, random,
            out);
   }
