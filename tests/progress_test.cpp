@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "base/line_times.h"
+#include "base/progress.h"
 #include "session/time_kept.h"
 
 namespace chromeball::progress_test {

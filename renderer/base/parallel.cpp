@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/version.h>
 
 #include "base/progress.h"
 
@@ -15,6 +16,8 @@ namespace {
 using SizeRange = tbb::blocked_range<size_t>;
 
 }  // namespace
+
+std::string tbbVersion() { return TBB_runtime_version(); }
 
 void parallelRanges(size_t count, size_t size, RangeBody body) {
   WorkMonitor* const monitor = currentMonitor();

@@ -10,9 +10,12 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 namespace chromeball {
+
+std::string tbbVersion();  // of the library that runs, "2021.8.0"
 
 // Refers to a callable body(size_t begin, size_t end).
 class RangeBody {

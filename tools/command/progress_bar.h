@@ -9,12 +9,12 @@
 #include <string>
 #include <thread>
 
-#include "base/line_times.h"
+#include "base/progress.h"
 #include "messages.h"
 
 namespace chromeball {
 
-// Lines come as LineTimes (base/line_times.h) says.
+// Lines come as LineTimes (base/progress.h) says.
 enum class ProgressStyle { None, Bar, Lines };
 
 // Lines where standard error is no terminal, unless the bar is asked for.

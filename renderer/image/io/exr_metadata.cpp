@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/OpenEXRConfig.h>
 
 #include <algorithm>
 #include <array>
@@ -184,6 +185,8 @@ class ExrHeaders {
 };
 
 }  // namespace
+
+std::string exrVersion() { return OPENEXR_VERSION_STRING; }
 
 Metadata metadataOf(const Imf::Header& header) {
   Metadata metadata;

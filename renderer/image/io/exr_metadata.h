@@ -11,6 +11,8 @@
 
 namespace chromeball {
 
+std::string exrVersion();  // of the OpenEXR that this was built with
+
 // The attributes of type string, int, float, double and m44f, and `envmap`, by their names in the
 // file; without the ones that say how the image is stored.
 Metadata metadataOf(const Imf::Header& header);
