@@ -40,6 +40,7 @@ struct SessionCallbacks {
   std::function<void(const SessionProgress&)> progress = {};
   std::function<void(const Message&)> message = {};  // notes and warnings, when they are known
   std::function<void()> finished = {};  // the last one of each start, also of one that failed
+  SettingWords words = plainWords;      // in messages about the image
 };
 
 // Loads and renders a description in a background thread, hands out the image so far without

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said to the user about a rendered image, with suggestions of options.
+// What is said about a rendered image.
 #pragma once
 
 #include <optional>
@@ -15,18 +15,19 @@ namespace chromeball {
 // The messages of `result`, and messages about excluded samples, clamped light, light beyond the
 // depth limits, and images that are nearly black or mostly clipped.
 Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,
-                        const FinishedRender& result);
+                        const FinishedRender& result, const SettingWords& words);
 
-// The option that sets a limit of depth, as it is typed: "--max-depth 8", "--integrator direct".
-std::string limitGiven(DepthLimit limit, const RenderSettings& settings);
+// A limit of depth: "--max-depth 8", "--integrator direct".
+std::string limitInWords(DepthLimit limit, const RenderSettings& settings,
+                         const SettingWords& words);
 
 // Only the messages about excluded samples and clamped light.
-void addExcluded(const RenderResult& result, Messages& messages);
+void addExcluded(const RenderResult& result, const SettingWords& words, Messages& messages);
 
-// The likely cause, with the option to try, if no surface is in view or nearly all that are have
+// The likely cause, with the setting to try, if no surface is in view or nearly all that are have
 // remained black; nullopt otherwise. Limits and parts of the light that took what there was are
 // named first.
 std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
-                                    const RenderResult& result);
+                                    const RenderResult& result, const SettingWords& words);
 
 }  // namespace chromeball
