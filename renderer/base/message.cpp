@@ -30,10 +30,6 @@ std::string withoutValues(std::string_view text) {
 
 }  // namespace
 
-std::string plainWords(std::string_view setting, const std::string& value) {
-  return fmt::format("`{}`{}{}", setting, value.empty() ? "" : " ", value);
-}
-
 Messages condensed(const Messages& messages) {
   constexpr size_t kMostOfAKind = 3;
   using Kind = std::tuple<Message::Kind, std::string, std::string>;

@@ -4,10 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,13 +18,6 @@ struct Remedy {
   std::string setting;
   std::string value;  // one that would do; empty: unknown
 };
-
-// How messages call a setting of that table, with a value or, if that is empty, without. The
-// command's is "--max-depth 8".
-using SettingWords = std::function<std::string(std::string_view setting, const std::string& value)>;
-
-// "`render.max_depth` 8"
-std::string plainWords(std::string_view setting, const std::string& value);
 
 struct Message {
   enum class Kind {
