@@ -110,8 +110,8 @@ TEST(SessionCallbacks, WordsOfMessagesAboutTheImage) {
   };
   const std::string plain = messagesOf({});
   EXPECT_NE(plain.find("`clamp` scaled "), std::string::npos) << plain;
-  EXPECT_NE(plain.find("100% of the visible surfaces are black: no light reaches them with "
-                       "`render.max_diffuse_depth` 0"),
+  EXPECT_NE(plain.find("% of the visible surfaces are black: no light reaches them with "
+                       "`render.max_diffuse_depth` 0 and `clamp` 0.001; leave them out"),
             std::string::npos)
       << plain;
   EXPECT_EQ(plain.find("--"), std::string::npos) << plain;
