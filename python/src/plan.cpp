@@ -63,7 +63,7 @@ Plan planOf(nb::handle scene, const Geometry* geometry, const ProbeMap* probe,
   if (geometry) description.scene = geometry->share();
   if (probe) place(*probe, description);
   if (!strategy.is_none()) {
-    description.lighting.strategy = nb::cast<std::string>(strategy.attr("name"));
+    description.lighting.strategy = textOf(strategy.attr("name"), "strategy");
     description.lighting.make = makerOf(strategy);
   }
   if (description.models.empty() && !description.scene)
