@@ -71,6 +71,7 @@ const std::map<std::string_view, std::function<void(D&)>> kBring = {
      [](D& d) { composite(d, CompositeMode::Difference); }},
     {"a scene from memory", [](D& d) { d.scene = std::make_shared<const Scene>(); }},
     {"a turn while the shutter is open", [](D& d) { d.origins.set("orbit-step", "--orbit-step"); }},
+    {"frames per second", [](D& d) { d.origins.set("fps", "--fps"); }},
     {"a transparent background", [](D& d) { d.settings.hideProbe = true; }},
     {"a shard", [](D& d) { d.settings = shardOf(d.settings, 0, 2); }},
     {"a crop",
@@ -110,6 +111,7 @@ const std::map<std::string_view, std::function<void(D&)>> kBring = {
     {"no layer of bent normals", [](D&) {}},
     {"no irradiance cache", [](D&) {}},
     {"a closed shutter", [](D&) {}},
+    {"neither frames nor an open shutter", [](D&) {}},
     {"no checkpoint", [](D&) {}},
 };
 
@@ -221,12 +223,15 @@ TEST(Capabilities, EverySettingInVainIsNamed) {
   delta.lighting.strategy = "median-cut:8";
   D suns = plain();
   suns.lighting.strategy = "suns";
+  D inMemory = plain();
+  inMemory.probe.file.reset();
+  inMemory.probe.map = std::make_shared<const Image>(2, 1, 3);
   const SceneContents nothing, probe{.hasProbe = true},
       all{true, true, true, true, true, true, true, true, true, true};
   for (const Dependence& d : dependences()) {
     const std::string name(d.setting);
     std::vector<std::vector<std::string>> told;
-    for (D* description : {&open, &inVain, &mapped, &flat, &delta, &suns})
+    for (D* description : {&open, &inVain, &mapped, &flat, &delta, &suns, &inMemory})
       for (const SceneContents& contents : {nothing, probe, all}) {
         EXPECT_EQ(idleSettings(*description, contents), std::vector<std::string>{}) << name;
         description->origins.set(name, "scene.toml:7");
@@ -240,6 +245,18 @@ TEST(Capabilities, EverySettingInVainIsNamed) {
         fmt::format("scene.toml:7: `{}` has no effect without {}", name, d.needs)};
     EXPECT_GT(std::ranges::count(told, line), 0) << line[0];
   }
+}
+
+// Frames per second are of frames, or of a shutter, also of one that is closed.
+TEST(Capabilities, FramesPerSecondNeedAUse) {
+  D d = plain();
+  d.origins.set("fps", "--fps");
+  EXPECT_TRUE(conflictIn(d));
+  d.run.isOfFrames = true;
+  EXPECT_FALSE(conflictIn(d));
+  d.run.isOfFrames = false;
+  d.origins.set("camera.shutter", "--shutter");
+  EXPECT_FALSE(conflictIn(d));
 }
 
 // Bounces in glass are counted apart from those that a limit of one bounce leaves.

@@ -92,8 +92,7 @@ Settings settingsOf(double time, std::optional<double> shutter, uint64_t seed, u
                     ImageSize size) {
   Settings s;
   s.set("model.time", time);
-  s.set("fps", 1.0);
-  if (shutter) s.set("camera.shutter", *shutter);
+  if (shutter) s.set("fps", 1.0), s.set("camera.shutter", *shutter);
   s.set("render.size", size);
   s.set("render.samples", samples);
   s.set("render.seed", seed);

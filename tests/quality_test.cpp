@@ -6,6 +6,7 @@
 
 #include <fstream>
 
+#include "description/capabilities.h"
 #include "front/plan_render.h"
 #include "image/io/read_image.h"
 #include "run_command.h"
@@ -67,6 +68,20 @@ TEST(Quality, GivenSettingsWin) {
   EXPECT_EQ(planned(file, {}).settings.samples, 7u);
   samples.set("render.samples", uint64_t(5));
   EXPECT_EQ(planned(withQuality("good"), samples).settings.samples, 5u);
+}
+
+// What a quality brings may be idle; what was given beside it may not.
+TEST(Quality, PartsWithoutEffectAreNotNamed) {
+  SceneFile scene;
+  scene.models.push_back({"m.gltf", {}, {}});
+  Settings over;
+  over.set("render.quality", std::string("draft"), "--quality");
+  over.set("render.integrator", std::string("direct"), "--integrator");
+  const SceneContents all{.hasProbe = true, .hasBodies = true};
+  EXPECT_EQ(idleSettings(planRender(scene, over), all), std::vector<std::string>());
+  over.set("render.max_depth", uint64_t(5), "--max-depth");
+  EXPECT_EQ(idleSettings(planRender(scene, over), all),
+            std::vector<std::string>{"--max-depth has no effect without the integrator path"});
 }
 
 // The header has the settings themselves.

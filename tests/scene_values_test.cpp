@@ -77,13 +77,21 @@ TEST(SceneValues, KeywordsAreOptionsWithTheirChecks) {
   EXPECT_NE(error(toml::table{{"max_dept", 3}}).find("max_depth"), std::string::npos);
   EXPECT_NE(error(toml::table{{"max_depth", -1}}).find("must be"), std::string::npos);
   EXPECT_NE(error(toml::table{{"output", "a.exr"}}).find("unknown keyword"), std::string::npos);
+  // What a render by keywords cannot honour.
+  EXPECT_EQ(error(toml::table{{"plate", "a.png"}}),
+            "render(): unknown keyword `plate`; it is a key of [composite]: give it in the scene");
+  EXPECT_NE(error(toml::table{{"radius", 3}}).find("[[light]]"), std::string::npos);
+  EXPECT_EQ(error(toml::table{{"noise_map", "a.png"}}),
+            "render(): unknown keyword `noise_map`; it is an option of the command alone");
+  for (const std::string_view keyword : keywords())
+    EXPECT_FALSE(findKeyword(keyword)->option.empty()) << keyword;
 }
 
 // A new option of the command is a keyword, or is listed as the command's own.
 TEST(SceneValues, EverySettingOfAnImageHasAKeyword) {
   for (const Setting& setting : settingTable()) {
     if (setting.option.empty() || setting.effect == Effect::Run || setting.name() == "shard" ||
-        setting.type == SettingType::Compound)
+        setting.type == SettingType::Compound || setting.name() == "camera.name")
       continue;
     const std::string keyword = keywordOf(setting.name());
     EXPECT_EQ(findKeyword(keyword), &setting) << setting.name();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The thread, order and number of a session's callbacks.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "base/error.h"
@@ -85,6 +87,50 @@ TEST(SessionCallbacks, ComeInOneThreadOfTheSession) {
   EXPECT_FALSE(messages.empty());
   for (const Message& message : session.wait().messages) messages.push_back(message.text);
   EXPECT_EQ(calls.messages, messages);
+}
+
+// Where limits took all light, the messages of the image say so, by the words of the program.
+TEST(SessionCallbacks, WordsOfMessagesAboutTheImage) {
+  RenderDescription d = ballDescription();
+  d.settings.maxDiffuseDepth = 0;
+  d.settings.clamp = 1e-3f;
+  const auto messagesOf = [&](SessionCallbacks callbacks) {
+    Calls calls;
+    const SettingWords words = callbacks.words;
+    callbacks = calls.callbacks();
+    callbacks.words = words;
+    Session session(d, callbacks);
+    session.start();
+    std::string all;
+    for (const Message& message : session.wait().messages) {
+      all += message.text + "\n";
+      EXPECT_GT(std::ranges::count(calls.messages, message.text), 0);
+    }
+    return all;
+  };
+  const std::string plain = messagesOf({});
+  EXPECT_NE(plain.find("`clamp` scaled "), std::string::npos) << plain;
+  EXPECT_NE(plain.find("% of the visible surfaces are black: no light reaches them with "
+                       "`render.max_diffuse_depth` 0 and `clamp` 0.001; leave them out"),
+            std::string::npos)
+      << plain;
+  EXPECT_EQ(plain.find("--"), std::string::npos) << plain;
+  const std::string own = messagesOf({.words = [](std::string_view setting, const std::string& v) {
+    return fmt::format("<{}={}>", setting, v);
+  }});
+  EXPECT_NE(own.find("<clamp=> scaled "), std::string::npos) << own;
+  EXPECT_NE(own.find("with <render.max_diffuse_depth=0>"), std::string::npos) << own;
+}
+
+TEST(SessionCallbacks, NoSurfaceInViewIsSaid) {
+  RenderDescription d = ballDescription();
+  d.camera.placed->target = {0, 9, 4.1};
+  Session session(d);
+  session.start();
+  const Messages messages = session.wait().messages;
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0].kind, Message::Kind::Warning);
+  EXPECT_EQ(messages[0].text, "no surface is in view; try another camera");
 }
 
 TEST(SessionCallbacks, FinishedComesOnceForEachStartAlsoOfAFailure) {

@@ -16,6 +16,16 @@ def _shape_text(shape: tuple[str | int, ...]) -> str:
     return "[" + ",".join(str(side) for side in shape) + "]"
 
 
+def as_array(name: str, value: Any) -> NDArray[Any]:
+    """The value as an array of its own type and shape. Throws InputError for a ragged list, a tensor on a GPU."""
+    import numpy as np
+
+    try:
+        return np.asarray(value)
+    except Exception as error:
+        raise InputError(f"{name}: is no array: {error}") from None
+
+
 def array(name: str, value: Any, shape: tuple[str | int, ...], dtype: str) -> NDArray[Any]:
     """The value as a contiguous array of this type: a copy only where it is not one already.
 
@@ -24,10 +34,7 @@ def array(name: str, value: Any, shape: tuple[str | int, ...], dtype: str) -> ND
     """
     import numpy as np
 
-    try:
-        found = np.asarray(value)
-    except Exception as error:  # a ragged list, a tensor on a GPU
-        raise InputError(f"{name}: is no array: {error}") from None
+    found = as_array(name, value)
     if found.ndim != len(shape) or any(
         isinstance(side, int) and side != length for side, length in zip(shape, found.shape)
     ):
@@ -44,6 +51,17 @@ def array(name: str, value: Any, shape: tuple[str | int, ...], dtype: str) -> ND
         return np.ascontiguousarray(found, dtype=target)
 
 
+def finite(name: str, value: Any, shape: tuple[str | int, ...]) -> NDArray[Any]:
+    """The same for floats of 32 bits. Throws InputError, with its place, for a number that is not finite."""
+    import numpy as np
+
+    found = array(name, value, shape, "float32")
+    wrong = np.argwhere(~np.isfinite(found))
+    if wrong.size:
+        raise InputError(f"{name}[{wrong[0][0]}]: is not finite")
+    return found
+
+
 def directions(name: str, value: Any) -> NDArray[Any]:
     """Unit vectors [N,3] of 32 bits. Throws InputError for one without a direction."""
     import numpy as np
@@ -57,15 +75,32 @@ def directions(name: str, value: Any) -> NDArray[Any]:
     return units
 
 
+def colors(name: str, value: Any) -> NDArray[Any]:
+    """Linear colours [V,3] or [V,4] from 0 to 1 as [V,4]; bytes and uint16 are fractions of the most that they hold."""
+    import numpy as np
+
+    found = as_array(name, value)
+    if found.ndim != 2 or found.shape[1] not in (3, 4):
+        raise InputError(f"{name}: has the shape {list(found.shape)}; it should be [V,3] or [V,4]")
+    most = np.iinfo(found.dtype).max if found.dtype in (np.uint8, np.uint16) else 1
+    channels = array(name, found, ("V", found.shape[1]), "float64") / most
+    wrong = np.flatnonzero(~((channels >= 0) & (channels <= 1)).all(1))
+    if wrong.size:
+        raise InputError(f"{name}[{wrong[0]}]: {found[wrong[0]].tolist()} should be from 0 to 1, or be bytes (uint8)")
+    opaque = np.ones((len(channels), 4), np.float32)
+    opaque[:, : channels.shape[1]] = channels
+    return opaque
+
+
 def texels(name: str, value: Any) -> NDArray[Any]:
     """A picture [H,W,1], [H,W,3] or [H,W,4] as one of four channels: bytes, or floats of 32 bits."""
     import numpy as np
 
-    found = np.asarray(value)
+    given = found = as_array(name, value)
     if found.ndim == 2:
         found = found[:, :, None]
     if found.ndim != 3 or found.shape[2] not in (1, 3, 4) or found.size == 0:
-        raise InputError(f"{name}: has the shape {list(np.shape(value))}; it should be [H,W,3] or [H,W,4]")
+        raise InputError(f"{name}: has the shape {list(given.shape)}; it should be [H,W,3] or [H,W,4]")
     if found.dtype.kind not in "uf" or (found.dtype.kind == "u" and found.dtype != np.uint8):
         raise InputError(f"{name}: has the type {found.dtype}; it should have bytes (uint8) or floats")
     dtype = np.uint8 if found.dtype == np.uint8 else np.float32
@@ -78,9 +113,10 @@ def matrix(name: str, value: Any) -> NDArray[np.float64]:
     """An affine transform [4,4] of column vectors, or the upper [3,4] of one."""
     import numpy as np
 
-    if np.shape(value) == (3, 4):
-        value = np.vstack([np.asarray(value), [0, 0, 0, 1]])
-    found = array(name, value, (4, 4), "float64")
+    given = as_array(name, value)
+    if given.shape == (3, 4):
+        given = np.vstack([array(name, given, (3, 4), "float64"), [0, 0, 0, 1]])
+    found = array(name, given, (4, 4), "float64")
     if not np.isfinite(found).all():
         raise InputError(f"{name}: is not finite")
     if not np.allclose(found[3], [0, 0, 0, 1]):

@@ -7,7 +7,7 @@ import os
 import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple, Sequence
 
-from . import _arrays
+from . import _arrays, _values
 from ._core import ProbeMap
 from ._errors import InputError, RenderWarning
 
@@ -49,8 +49,9 @@ class Probe:
         if isinstance(source, ProbeMap):
             self._map = source
             return
+        mapping = _values.text("Probe(): mapping", mapping)
         if isinstance(source, (str, os.PathLike)):
-            self._map = ProbeMap.read(os.fspath(source), mapping)
+            self._map = ProbeMap.read(_values.path("Probe()", source), mapping)
         else:
             texels = _arrays.array("Probe()", source, ("H", "W", 3), "float32")
             if texels.size == 0:
@@ -69,6 +70,11 @@ class Probe:
     def mapping(self) -> str:
         """The mapping of the file or array."""
         return self._map.mapping
+
+    @property
+    def messages(self) -> list[tuple[str, str]]:
+        """How the file or array was read: pairs of "note" or "warning", and the text. (Warnings were RenderWarnings too.)"""
+        return self._map.messages
 
     def rotated(self, rotation: float | Sequence[float]) -> Probe:
         """The probe after a turn: a yaw in degrees about +Y, counter-clockwise seen from above; (yaw, pitch, roll) in
@@ -90,7 +96,9 @@ class Probe:
     def lights(self, method: str, n: int | None = None, *, seed: int = 0, ambient: bool = False) -> Lights:
         """Up to `n` directional lights in place of the probe, by a method of `chromeball lights`: "median-cut",
         "penrose", "irradiance-fit" and others (docs/methods.md). `seed`: of stochastic methods; `ambient`: of the fit."""
-        return _lights(self._map.lights(method, n, seed, ambient))
+        count = None if n is None else _values.whole("lights(): n", n, 1, 2**31 - 1)
+        seed = _values.whole("lights(): seed", seed, 0, 2**64 - 1)
+        return _lights(self._map.lights(_values.text("lights(): method", method), count, seed, bool(ambient)))
 
     def suns(self) -> Lights:
         """The suns of the probe as discs of constant radiance, in order of decreasing irradiance."""
@@ -99,19 +107,28 @@ class Probe:
     def to(self, mapping: str, size: int | tuple[int, int] | None = None) -> NDArray[np.float32]:
         """[H,W,3] radiance in another mapping, turned and scaled. `size`: width and height, or one number for a square
         (the height, for "lat-long"); None: one that keeps the detail."""
-        if isinstance(size, int):
-            size = (2 * size if mapping == "lat-long" else size, size)
-        return self._map.to(mapping, size)
+        mapping = _values.text("to(): mapping", mapping)
+        return self._map.to(mapping, None if size is None else _size(mapping, size))
 
     def __repr__(self) -> str:
         width, height = self.size
         return f"<chromeball.Probe {self._map.name}, {self.mapping}, {width} x {height}>"
 
 
+def _size(mapping: str, size: Any) -> tuple[int, int]:
+    most = 2**31 - 1
+    if not isinstance(size, (tuple, list)):
+        height = _values.whole("to(): size", size, 1, most // 2)
+        return (2 * height if mapping == "lat-long" else height, height)
+    if len(size) != 2:
+        raise InputError(f"to(): size: {size!r} should be one whole number, or two")
+    return (_values.whole("to(): size", size[0], 1, most), _values.whole("to(): size", size[1], 1, most))
+
+
 def _numbers(name: str, value: Any, counts: tuple[int, ...]) -> list[float]:
     import numpy as np
 
-    numbers = np.atleast_1d(np.asarray(value))
+    numbers = np.atleast_1d(_arrays.as_array(name, value))
     if numbers.ndim != 1 or numbers.size not in counts or numbers.dtype.kind not in "iuf":
         raise InputError(f"{name}: {value!r} should be {' or '.join(map(str, counts))} numbers")
     if not np.isfinite(numbers).all():

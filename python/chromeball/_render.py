@@ -7,7 +7,7 @@ import os
 import sys
 from typing import Any, Callable, Union
 
-from . import _core
+from . import _core, _values
 from ._camera import Camera
 from ._core import Plan
 from ._errors import InputError
@@ -24,7 +24,7 @@ Progress = Union[bool, Callable[[str, float], object], None]
 
 def keywords(name: str | None = None) -> Any:
     """The names of all keywords of render(), or what one of them means, with its valid values."""
-    return _core.keywords() if name is None else _core.help_of(name)
+    return _core.keywords() if name is None else _core.help_of(_values.text("keywords()", name))
 
 
 def _plan(caller: str, scene: SceneLike, probe: ProbeLike, camera: Camera | None, settings: dict[str, Any]) -> Plan:
@@ -32,11 +32,14 @@ def _plan(caller: str, scene: SceneLike, probe: ProbeLike, camera: Camera | None
     if probe is not None and not isinstance(probe, Probe):
         if not isinstance(probe, (str, os.PathLike)):
             raise InputError(f"{caller}: probe is a {type(probe).__name__}; it should be a chromeball.Probe, or a file")
-        probe = Probe(probe)
+        settings["probe"] = probe
+        probe = None
     if camera is not None and not isinstance(camera, Camera):
         raise InputError(f"{caller}: camera is a {type(camera).__name__}; it should be a chromeball.Camera")
     if camera is not None and camera.size is not None:
         settings.setdefault("size", camera.size)
+    if "crop" in settings and not isinstance(settings["crop"], str):
+        settings["crop"] = _crop(caller, settings["crop"])
     strategy = None
     if not isinstance(settings.get("strategy", ""), str):
         strategy = CheckedStrategy(settings.pop("strategy"))
@@ -52,6 +55,13 @@ def _plan(caller: str, scene: SceneLike, probe: ProbeLike, camera: Camera | None
         raise InputError(f"{caller}: scene is a {type(scene).__name__}; it should be a chromeball.Scene, a file or a dict")
     return _core.plan(source, geometry, None if probe is None else probe._map,
                       None if camera is None else camera.keys, settings, strategy, caller)
+
+
+def _crop(caller: str, window: Any) -> str:
+    numbers = list(window) if hasattr(window, "__len__") else []
+    if len(numbers) != 4:
+        raise InputError(f"{caller}: crop: {window!r} should be (x, y, width, height) in pixels")
+    return ",".join(str(_values.whole(f"{caller}: crop", number, 0, 2**31 - 1)) for number in numbers)
 
 
 def _bar(stage: str, fraction: float) -> None:
@@ -82,8 +92,9 @@ def render(
     """Renders an image.
 
     scene: a Scene; a scene file (.toml) or model (.gltf, .glb) by its path; or a dict with the keys of a scene file.
-    probe: a Probe or its file; None: the scene's own light. camera: None is the scene's, or one that frames it.
-    progress: True shows a bar; or it is called with (stage, fraction), from another thread.
+    probe: its file, which takes the place of the scene's, as by the command's --probe; or a Probe, which the scene's rotation
+    (or probe_rotation=) turns further and its scale scales further; None: the scene's own light. camera: None is the
+    scene's, or one that frames it. progress: True shows a bar; or it is called with (stage, fraction), from another thread.
 
     Settings have the names of `chromeball render`'s options with underscores (keywords(); docs/scene-file.md): size=(width,
     height), samples=, time= (seconds), noise= (percent), strategy= (a name, or an object with sample() and pdf():

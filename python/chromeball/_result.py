@@ -8,6 +8,7 @@ import os
 import warnings
 from typing import TYPE_CHECKING, Any
 
+from . import _values
 from ._core import Image
 from ._errors import RenderWarning
 
@@ -66,7 +67,7 @@ class Result:
     def save(self, path: str | os.PathLike[str], **display: Any) -> None:
         """Writes an .exr (all layers), .hdr, .pfm, or a .png by exposure= (stops, or "auto"), tonemap= and
         white_balance=, which replace the render's."""
-        for kind, text in self._image.save(os.fspath(path), display):
+        for kind, text in self._image.save(_values.path("save()", path), display):
             if kind == "warning":
                 warnings.warn(text, RenderWarning, stacklevel=2)
 

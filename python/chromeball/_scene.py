@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
-from . import _arrays
+from . import _arrays, _values
 from ._core import Geometry, MaterialBsdf, Session, check_scene
 from ._errors import InputError
 
@@ -125,24 +125,21 @@ class Scene:
         """Adds a mesh of positions [V,3] in metres and triangles [T,3] of vertex numbers, counter-clockwise from the front;
         without triangles, positions are taken in threes.
 
-        normals [V,3]: None is flat. uvs [V,2]: v down. colors [V,3] or [V,4]: linear, times the base colour. transform
-        [4,4]: of column vectors. Returns the mesh's number, for add_instance(). Arrays are copied.
+        normals [V,3]: None is flat. uvs [V,2]: v down. colors [V,3] or [V,4]: linear, from 0 to 1 or as bytes, times the base
+        colour. transform [4,4]: of column vectors. Returns the mesh's number, for add_instance(). Arrays are copied.
         """
-        import numpy as np
-
+        name = _values.text("name", name)
         points = _arrays.array("positions", positions, ("V", 3), "float32")
         faces = None if triangles is None else _arrays.array("triangles", triangles, ("T", 3), "uint32")
         if len(points) == 0 or (faces is not None and len(faces) == 0):
             raise InputError("add_mesh(): the mesh has no triangles")
         optional: dict[str, Any] = {"normals": None, "uvs": None, "colors": None}
         if normals is not None:
-            optional["normals"] = _arrays.array("normals", normals, ("V", 3), "float32")
+            optional["normals"] = _arrays.finite("normals", normals, ("V", 3))
         if uvs is not None:
             optional["uvs"] = _arrays.array("uvs", uvs, ("V", 2), "float32")
         if colors is not None:
-            if np.shape(colors)[-1:] == (3,):
-                colors = np.pad(np.asarray(colors, np.float64), ((0, 0), (0, 1)), constant_values=1)
-            optional["colors"] = _arrays.array("colors", colors, ("V", 4), "float32")
+            optional["colors"] = _arrays.colors("colors", colors)
         to_world = None if transform is None else _arrays.matrix("transform", transform)
         number = self._material(material)
         mesh = self._geometry.add_mesh(points, faces, material=number, **optional)
@@ -155,7 +152,8 @@ class Scene:
         if not 0 <= mesh < len(self._meshes):
             raise InputError(f"add_instance(): there is no mesh {mesh} among {len(self._meshes)}")
         number = self._meshes[mesh] if material is None else self._material(material)
-        self._geometry.add_instance(mesh, number, _arrays.matrix("transform", transform), name)
+        to_world = _arrays.matrix("transform", transform)
+        self._geometry.add_instance(mesh, number, to_world, _values.text("name", name))
 
     def _material(self, material: Material | None) -> int:
         material = material or _DEFAULT

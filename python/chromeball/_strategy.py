@@ -6,7 +6,7 @@ from __future__ import annotations
 import inspect
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from . import _arrays
+from . import _arrays, _values
 from ._core import BuiltIn
 from ._errors import InputError
 from ._probe import Probe
@@ -35,7 +35,7 @@ class Strategy:
     def __init__(self, name: str, probe: Probe, *, mis: bool = True) -> None:
         if not isinstance(probe, Probe):
             raise InputError(f"Strategy(): probe is a {type(probe).__name__}; it should be a chromeball.Probe")
-        self.name = name
+        self.name = _values.text("Strategy()", name)
         self._built = BuiltIn(name, probe._map, mis)
 
     def sample(self, points: Any, u: Any) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:

@@ -9,6 +9,7 @@
 #include "arrays.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "values.h"
 
 namespace chromeball::python {
 namespace {
@@ -27,6 +28,11 @@ float numberOf(std::string_view keyword, nb::handle value) {
   float number = 0;
   if (!nb::try_cast(value, number)) refuse(keyword, "a number");
   return number;
+}
+
+std::string stringOf(std::string_view keyword, nb::handle value) {
+  if (!nb::isinstance<nb::str>(value)) refuse(keyword, "a string");
+  return textOf(value, fmt::format("Material(): {}", keyword));
 }
 
 // `count`: 3, or 4 with an alpha that may be missing.
@@ -98,8 +104,7 @@ Field texture(std::string_view keyword, TextureSlot Material::*member, bool isCo
 
 void setAlphaMode(Material& m, nb::handle value, SceneBuilder&) {
   static const std::vector<std::string_view> names = {"opaque", "mask", "blend"};
-  std::string name;
-  if (!nb::try_cast(value, name)) refuse("alpha_mode", "a string");
+  const std::string name = stringOf("alpha_mode", value);
   const auto found = std::ranges::find(names, name);
   if (found == names.end())
     throwInput("Material(): alpha_mode: `{}` is unknown; {}", name, didYouMean(name, names));
@@ -109,10 +114,7 @@ void setAlphaMode(Material& m, nb::handle value, SceneBuilder&) {
 const std::vector<Field>& fields() {
   using E = ExtendedMaterial;
   static const std::vector<Field> all = {
-      {"name",
-       [](Material& m, nb::handle v, SceneBuilder&) {
-         if (!nb::try_cast(v, m.name)) refuse("name", "a string");
-       }},
+      {"name", [](Material& m, nb::handle v, SceneBuilder&) { m.name = stringOf("name", v); }},
       {"base_color",
        [](Material& m, nb::handle v, SceneBuilder&) { m.baseColor = colorOf("base_color", v, 4); }},
       number("metallic", &Material::metallic),
@@ -157,7 +159,7 @@ const std::vector<Field>& fields() {
 Material materialOf(const nb::dict& keywords, SceneBuilder& builder) {
   Material material;
   for (const auto [key, value] : keywords) {
-    const std::string keyword = nb::str(key).c_str();
+    const std::string keyword = textOf(key, "Material(): a keyword");
     const auto found = std::ranges::find(fields(), keyword, &Field::keyword);
     if (found == fields().end()) {
       std::vector<std::string_view> known;

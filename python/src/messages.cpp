@@ -7,9 +7,12 @@ namespace chromeball::python {
 
 std::string inWords(const std::optional<Remedy>& remedy) {
   if (!remedy) return "";
-  const std::string keyword = keywordOf(remedy->setting);
-  return remedy->value.empty() ? fmt::format("; see {}", keyword)
-                               : fmt::format("; try {}={}", keyword, remedy->value);
+  return fmt::format("; {} {}", remedy->value.empty() ? "see" : "try",
+                     keywordInWords(remedy->setting, remedy->value));
+}
+
+std::string keywordInWords(std::string_view setting, const std::string& value) {
+  return keywordOf(setting) + (value.empty() ? "" : "=" + value);
 }
 
 std::vector<std::pair<std::string, std::string>> pairsOf(const Messages& messages) {

@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "bindings.h"
+#include "front/arguments.h"
 #include "front/plan_render.h"
 #include "front/scene_values.h"
 #include "geometry.h"
@@ -19,7 +20,7 @@ namespace chromeball::python {
 namespace {
 
 SceneFile sceneOf(nb::handle scene) {
-  if (nb::isinstance<nb::str>(scene)) return openScene(nb::cast<std::string>(scene));
+  if (nb::isinstance<nb::str>(scene)) return openScene(textOf(scene, "scene"));
   SceneFile read = chromeball::sceneOf(tableOf(nb::cast<nb::dict>(scene), "scene"), "scene");
   read.path.clear();
   return read;
@@ -32,31 +33,37 @@ void keepToMemory(RenderDescription& description) {
   description.run.checkpoint.reset();
 }
 
+// The probe takes the place of the scene's file, with a turn and a scale of its own: the
+// description's are those of the light around the scene, which the probe is then part of.
+void place(const ProbeMap& probe, RenderDescription& description) {
+  ProbeDescription& light = description.probe;
+  light.file.reset();
+  light.map = probe.map;
+  light.rotation = after(probe.rotation, light.rotation);
+  light.scale *= probe.scale;
+  for (int i = 0; i < 3; ++i)
+    if (light.scale[i] != 0 && !isPositiveFloat(light.scale[i]))
+      throwInput("{}: its scale times that of the scene, {}, should be 0, or {}", probe.name,
+                 light.scale[i], kPositiveFloats);
+}
+
 Plan planOf(nb::handle scene, const Geometry* geometry, const ProbeMap* probe,
             const std::optional<Dict>& camera, const Dict& keywords, const nb::object& strategy,
             const std::string& caller) {
   SceneFile file = sceneOf(scene);
   if (camera) replaceCamera(file, tableOf(*camera, "Camera()"), "Camera()");
   Settings settings = keywordSettings(tableOf(keywords, caller), caller);
-  if (probe) {
-    if (!settings.has("probe.rotation"))
-      settings.set("probe.rotation", probe->rotation.numbers(), "Probe()");
-    if (!settings.has("probe.scale")) {
-      const glm::dvec3& s = probe->scale;
-      settings.set("probe.scale", std::vector<double>{s.x, s.y, s.z}, "Probe()");
-    }
-  }
+  if (probe && settings.has("probe.mapping"))
+    throwInput("{}: the probe is in memory; give its mapping to chromeball.Probe()",
+               settings.location("probe.mapping"));
   Plan plan{planRender(std::move(file), settings), size_t(settings.get<uint64_t>("threads")),
             strategy};
   RenderDescription& description = plan.description;
   keepToMemory(description);
   if (geometry) description.scene = geometry->share();
-  if (probe) {
-    description.probe.file.reset();
-    description.probe.map = probe->map;
-  }
+  if (probe) place(*probe, description);
   if (!strategy.is_none()) {
-    description.lighting.strategy = nb::cast<std::string>(strategy.attr("name"));
+    description.lighting.strategy = textOf(strategy.attr("name"), "strategy");
     description.lighting.make = makerOf(strategy);
   }
   if (description.models.empty() && !description.scene)

@@ -24,7 +24,9 @@ namespace chromeball::python {
 namespace {
 
 ProbeMap probeOf(LoadedProbe loaded, const std::string& name) {
-  Messages messages = probeMessages(loaded, name);
+  Messages messages = loaded.messages;
+  for (const std::string& line : warnings(loaded, name)) addWarning(messages, "{}", line);
+  if (loaded.detected) addNote(messages, "{}", detection(loaded, name));
   const std::string mapping = mappingName(loaded.mapping);
   return {std::make_shared<const Image>(std::move(loaded.latLong)),
           {},
@@ -46,12 +48,6 @@ ProbeMap probeOfArray(const ArrayIn<float>& array, const std::string& mapping) {
   Image image = imageOf(array);
   const nb::gil_scoped_release released;
   return probeOf(loadProbe(std::move(image), mapping, "mapping", "the array"), "the array");
-}
-
-// First turned as it is, then by `turn`.
-Rotation after(const Rotation& own, const Rotation& turn) {
-  if (!own.isTilted() && !turn.isTilted()) return Rotation(own.yaw() + turn.yaw());
-  return Rotation::ofQuaternion(turn.quaternion() * own.quaternion());
 }
 
 ProbeMap rotated(const ProbeMap& probe, const std::vector<double>& numbers) {

@@ -21,4 +21,10 @@ struct ProbeMap {
   Messages messages;    // of its reader
 };
 
+// The turn that is `own`, and then `turn`.
+inline Rotation after(const Rotation& own, const Rotation& turn) {
+  if (!own.isTilted() && !turn.isTilted()) return Rotation(own.yaw() + turn.yaw());
+  return Rotation::ofQuaternion(turn.quaternion() * own.quaternion());
+}
+
 }  // namespace chromeball::python

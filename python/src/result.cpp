@@ -7,7 +7,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
 #include "arrays.h"
+#include "base/text.h"
 #include "bindings.h"
 #include "front/plan_render.h"
 #include "front/scene_values.h"
@@ -63,7 +66,13 @@ Image coverageOf(const OutputImage& image) {
 // The display of a .png: the render's, with those of its settings that are given again.
 OutputDescription shownAs(const Result& result, const Dict& keywords, const std::string& caller) {
   OutputDescription output = result.output;
-  const Settings given = keywordSettings(tableOf(keywords, caller), caller);
+  static const std::vector<std::string_view> names = {"exposure", "tonemap", "white_balance"};
+  const toml::table values = tableOf(keywords, caller);
+  for (const auto& [key, value] : values)
+    if (std::ranges::count(names, key.str()) == 0)
+      throwInput("{}: unknown keyword `{}`; {}", caller, printableName(key.str()),
+                 didYouMean(key.str(), names));
+  const Settings given = keywordSettings(values, caller);
   const PlannedDisplay display = planDisplay(given);
   if (given.has("output.tonemap")) output.display.tone = display.transform.tone;
   if (given.has("output.white_balance")) output.display.balance = display.transform.balance;

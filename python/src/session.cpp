@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "bindings.h"
+#include "messages.h"
 #include "plan.h"
 #include "process.h"
 #include "result.h"
@@ -30,10 +31,11 @@ class PythonSession {
         strategy_(plan.strategy),
         output_(plan.description.output),
         threads_(plan.threads) {
-    session_.emplace(
-        plan.description,
-        SessionCallbacks{
-            [this](const SessionProgress& p) { report(p); }, {}, [this] { finish(); }});
+    session_.emplace(plan.description,
+                     SessionCallbacks{[this](const SessionProgress& p) { report(p); },
+                                      {},
+                                      [this] { finish(); },
+                                      keywordInWords});
     const nb::gil_scoped_release released;
     const std::lock_guard lock(living().mutex);
     living().sessions.insert(this);

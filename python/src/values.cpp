@@ -25,7 +25,7 @@ toml::table tableOf(const nb::dict& values, const std::string& where, int level)
   for (const auto [key, item] : values) {
     if (!nb::isinstance<nb::str>(key))
       throwInput("{}: a key is {}; it should be a string", where, nb::repr(key).c_str());
-    const std::string name = nb::str(key).c_str();
+    const std::string name = textOf(key, where + ": a key");
     toml::array one;
     append(item, where + "." + name, level + 1, one);
     if (!one.empty())
@@ -50,7 +50,7 @@ void append(nb::handle value, const std::string& where, int level, toml::array& 
     else
       to.push_back(int64_t(number));
   } else if (PyUnicode_Check(p)) {
-    to.push_back(nb::cast<std::string>(value));
+    to.push_back(textOf(value, where));
   } else if (nb::isinstance<nb::dict>(value)) {
     to.push_back(tableOf(nb::borrow<nb::dict>(value), where, level));
   } else if (nb::isinstance<nb::list>(value)) {
@@ -70,6 +70,13 @@ void append(nb::handle value, const std::string& where, int level, toml::array& 
 }
 
 }  // namespace
+
+std::string textOf(nb::handle string, const std::string& name) {
+  Py_ssize_t size = 0;
+  if (const char* text = PyUnicode_AsUTF8AndSize(string.ptr(), &size)) return {text, size_t(size)};
+  PyErr_Clear();
+  throwInput("{}: {} is no valid text", name, nb::repr(string).c_str());
+}
 
 toml::table tableOf(const nb::dict& values, const std::string& name) {
   return tableOf(values, name, 0);

@@ -19,4 +19,7 @@ using Dict = nb::typed<nb::dict, nb::str, nb::any>;  // the type of arguments in
 // Throws InputError, begun by `name`, for anything else.
 toml::table tableOf(const nb::dict& values, const std::string& name);
 
+// Throws InputError, begun by `name`, for a string that is no valid Unicode: one with a surrogate.
+std::string textOf(nb::handle string, const std::string& name);
+
 }  // namespace chromeball::python

@@ -57,8 +57,22 @@ def test_arrays_are_copied(camera, small):
         (dict(triangles=TWO + 2**32), r"triangles: 4294967299 is out of range"),
         (dict(triangles=TWO + 1), r"triangle"),
         (dict(normals=SQUARE[:3]), r"normals"),
+        (dict(normals=np.where(SQUARE == 1, np.nan, SQUARE)), r"normals\[0\]: is not finite"),
         (dict(uvs=SQUARE), r"uvs: has the shape \[4, 3\]; it should be \[V,2\]"),
-        (dict(colors=-np.ones((4, 3))), r"color"),
+        (dict(colors=-np.ones((4, 3))), r"colors\[0\]: \[-1.0, -1.0, -1.0\] should be from 0 to 1"),
+        (dict(colors=2 * np.ones((4, 4))), r"colors\[0\]: .* should be from 0 to 1"),
+        (dict(colors=np.full((4, 3), 128)), r"colors\[0\]: \[128, 128, 128\] should be from 0 to 1, or be bytes"),
+        (dict(colors=np.full((4, 3), np.nan)), r"colors\[0\]"),
+        (dict(colors=np.full((4, 3), 0.5 + 0.1j)), r"colors: has the type complex128"),
+        (dict(colors=[["1", "0", "0"]] * 4), r"colors: has the type <U1"),
+        (dict(colors=np.ones((4, 3), bool)), r"colors: has the type bool"),
+        (dict(colors=(1, 0, 0)), r"colors: has the shape \[3\]; it should be \[V,3\] or \[V,4\]"),
+        (dict(colors=np.ones((4, 1, 3))), r"colors: has the shape \[4, 1, 3\]"),
+        (dict(colors=[[1, 0, 0], [1, 0]]), r"colors: is no array"),
+        (dict(colors=np.ones((3, 3))), r"colors"),
+        (dict(name="\ud800"), r"name: '.ud800' is no valid text"),
+        (dict(name=5), r"name: is a int; it should be a string"),
+        (dict(transform=[[1, 0], [1]]), r"transform: is no array"),
         (dict(transform=np.eye(3)), r"transform: has the shape \[3, 3\]"),
         (dict(transform=np.diag([1, 1, 0, 1])), r"not invertible"),
         (dict(transform=np.full((4, 4), np.nan)), r"transform: is not finite"),
@@ -88,6 +102,10 @@ def test_wrong_meshes_are_refused_by_name(arguments, expected, camera, small):
         (dict(unlit=1), r"unlit should be True or False"),
         (dict(base_color_texture=np.zeros((2, 2, 2))), r"base_color_texture: has the shape \[2, 2, 2\]"),
         (dict(base_color_texture=np.zeros((2, 2, 3), np.int64)), r"should have bytes"),
+        (dict(base_color_texture=[[1, 2], [3]]), r"base_color_texture: is no array"),
+        (dict(alpha_mode="\ud800"), r"alpha_mode: '.ud800' is no valid text"),
+        (dict(name="\ud800"), r"name: '.ud800' is no valid text"),
+        ({"\ud800": 1}, r"a keyword: '.ud800' is no valid text"),
     ],
 )
 def test_wrong_materials_are_refused_by_name(keywords, expected):
@@ -102,6 +120,19 @@ def test_a_texture_colours_the_mesh(camera, small):
     scene.add_mesh(SQUARE, TWO, uvs=SQUARE[:, ::2], material=cb.Material(base_color_texture=texture, specular=0))
     middle = cb.render(scene, cb.Probe(sky()), camera, **small).color[8, 12]
     assert middle[0] > 0 and middle[1] == 0 and middle[2] == 0
+
+
+def test_colours_of_vertices(camera, small):
+    """Bytes and uint16 are fractions; floats and whole numbers of 0 and 1 are themselves."""
+    grey = rendered(lambda s: s.add_mesh(SQUARE, TWO, material=cb.Material(base_color=0.2)), camera, small)
+
+    def shown(colors):
+        return rendered(lambda s: s.add_mesh(SQUARE, TWO, colors=colors, material=cb.Material(base_color=1)), camera, small)
+
+    for colors in (np.full((4, 3), 0.2), np.full((4, 3), 51, np.uint8), np.full((4, 4), (51, 51, 51, 255), np.uint8),
+                   np.full((4, 3), 13107, np.uint16)):
+        np.testing.assert_allclose(shown(colors), grey, rtol=1e-5)
+    np.testing.assert_array_equal(shown([(1, 0, 0)] * 4), shown(np.array([[1.0, 0, 0]] * 4)))
 
 
 @pytest.mark.parametrize("array, expected", [

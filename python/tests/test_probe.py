@@ -48,6 +48,13 @@ def test_every_mapping_comes_back(mapping, size):
     assert error.mean() < 0.02
 
 
+def test_sizes_are_whole_numbers_of_any_type():
+    probe = cb.Probe(sky())
+    assert probe.to("lat-long", np.int64(8)).shape == probe.to("lat-long", np.uint8(8)).shape == (8, 16, 3)
+    assert probe.to("cube-cross", (np.int64(24), 32)).shape == (32, 24, 3)
+    assert len(probe.lights("median-cut", np.int32(4)).angles) == 4
+
+
 def test_lights_keep_the_energy_and_turn_with_the_probe():
     probe = cb.Probe(sky()).scaled(2)
     lights = probe.lights("median-cut", 16)
@@ -94,6 +101,20 @@ def test_files():
     lambda p: p.to("cube"),
     lambda p: p.to("angular", (3, 5)),
     lambda p: p.to("angular", 0),
+    lambda p: p.to("angular", 2**31),
+    lambda p: p.to("angular", 8.0),
+    lambda p: p.to("cube-cross", (48, 64.0)),
+    lambda p: p.to("\ud800"),
+    lambda p: p.to(5),
+    lambda p: p.lights("median-cut", 2**31),
+    lambda p: p.lights("median-cut", 2.5),
+    lambda p: p.lights("median-cut", 4, seed=-1),
+    lambda p: p.lights("\ud800", 4),
+    lambda p: p.rotated([[1], [1, 2]]),
+    lambda p: cb.Probe("\ud800"),
+    lambda p: cb.Probe(sky(), "\ud800"),
+    lambda p: cb.Strategy("\ud800", p),
+    lambda p: cb.keywords("\ud800"),
 ])
 def test_wrong_arguments_are_refused(call):
     with pytest.raises(cb.InputError):

@@ -88,6 +88,7 @@ constexpr Feature kFromMemory{"a scene from memory", "",
                               [](const D& d) { return d.scene != nullptr; }};
 constexpr Feature kOrbitStep{"a turn while the shutter is open", "orbit-step",
                              [](const D& d) { return d.origins.has("orbit-step"); }};
+constexpr Feature kFps{"frames per second", "fps", [](const D& d) { return d.origins.has("fps"); }};
 constexpr Feature kTransparent{"a transparent background", "transparent",
                                [](const D& d) { return d.settings.hideProbe; }};
 constexpr Feature kShard{"a shard", "shard",
@@ -143,6 +144,9 @@ constexpr Feature kNoCache{"no irradiance cache", "render.irradiance_cache",
                            [](const D& d) { return !d.settings.cacheError; }};
 constexpr Feature kNoShutter{"a closed shutter", "camera.shutter",
                              [](const D& d) { return !d.camera.shutter; }};
+constexpr Feature kNoFrames{"neither frames nor an open shutter", "camera.shutter", [](const D& d) {
+                              return !d.run.isOfFrames && !d.origins.has("camera.shutter");
+                            }};
 constexpr Feature kNoCheckpoint{"no checkpoint", "checkpoint",
                                 [](const D& d) { return !d.run.checkpoint; }};
 
@@ -199,6 +203,7 @@ constexpr std::array kConflicts = {
     Conflict{kCache, kNoLightSamples,
              "not with a strategy without light samples; leave one of the two out"},
     Conflict{kOrbitStep, kNoShutter, "needs an open shutter"},
+    Conflict{kFps, kNoFrames, "needs frames or an open shutter"},
     Conflict{kResume, kNoCheckpoint, "needs a checkpoint"},
     Conflict{kCheckpointEvery, kNoCheckpoint, "needs a checkpoint"},
     Conflict{kShard, kTwoPass, kNotTwo},

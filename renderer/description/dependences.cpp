@@ -53,7 +53,9 @@ constexpr std::array kDependences = {
     Dependence{"camera.shutter_steps", "an open shutter",
                [](const D& d, const SceneContents&) { return d.camera.shutter.has_value(); }},
     Dependence{"probe.mapping", "a probe's file",
-               [](const D& d, const SceneContents&) { return d.probe.file.has_value(); }},
+               [](const D& d, const SceneContents&) { return d.probe.file || d.probe.map; }},
+    Dependence{"probe.mapping", "a probe's file: the probe is in memory",
+               [](const D& d, const SceneContents&) { return d.probe.file || !d.probe.map; }},
     Dependence{"probe.rotation", "a probe",
                [](const D& d, const SceneContents& c) {
                  return c.hasProbe || d.origins.has("probe.rotation_keys");  // which are named
@@ -161,7 +163,11 @@ std::vector<std::string> idleSettings(const RenderDescription& description,
                                       const SceneContents& contents) {
   std::vector<std::string> lines;
   for (const Dependence& d : kDependences) {
-    if (!description.origins.has(d.setting) || d.isMet(description, contents)) continue;
+    const Origins& origins = description.origins;
+    if (!origins.has(d.setting) || d.isMet(description, contents)) continue;
+    // A part of a quality may be idle.
+    if (origins.has("render.quality") && origins.of(d.setting) == origins.of("render.quality"))
+      continue;
     lines.push_back(
         fmt::format("{} has no effect without {}", namedOrigin(description, d.setting), d.needs));
   }

@@ -5,32 +5,39 @@
 #include <array>
 #include <map>
 
+#include <fmt/ranges.h>
+
 #include "base/text.h"
 #include "front/scene_file_camera.h"
 
 namespace chromeball {
 namespace {
 
-// Files, frames and displays of the command, which a program has means of its own for.
+// Files, frames and displays of the command, which a program has means of its own for; and the name
+// of a camera, which replaceCamera() takes.
 constexpr auto kOfTheCommand = std::to_array<std::string_view>(
-    {"output.file", "stats", "frames", "frame", "overwrite", "seed-per-frame", "probe-sequence",
-     "write-every", "preview", "display", "checkpoint", "checkpoint-every", "resume", "shard"});
+    {"camera.name", "output.file", "stats", "noise-map", "frames", "frame", "overwrite",
+     "seed-per-frame", "probe-sequence", "write-every", "preview", "display", "checkpoint",
+     "checkpoint-every", "resume", "shard"});
 
 using Keywords = std::map<std::string, const Setting*, std::less<>>;
 
+std::string withUnderscores(std::string option) {
+  std::ranges::replace(option, '-', '_');
+  return option;
+}
+
+bool isOfTheCommand(const Setting& setting) {
+  return std::ranges::count(kOfTheCommand, setting.name()) > 0;
+}
+
 Keywords allKeywords() {
-  std::map<std::string_view, int> uses;  // of a key
-  for (const Setting& setting : settingTable()) ++uses[setting.key];
   Keywords all;
   for (const Setting& setting : settingTable()) {
-    if (setting.type == SettingType::Compound ||
-        std::ranges::count(kOfTheCommand, setting.name()) > 0)
+    if (setting.option.empty() || setting.type == SettingType::Compound || isOfTheCommand(setting))
       continue;
-    std::string keyword = setting.option;
-    std::ranges::replace(keyword, '-', '_');
-    if (setting.name() == "output.aovs") keyword = "layers";
-    if (keyword.empty() && uses[setting.key] == 1) keyword = setting.key;
-    if (!keyword.empty()) all[keyword] = &setting;
+    const bool isLayers = setting.name() == "output.aovs";
+    all[isLayers ? "layers" : withUnderscores(setting.option)] = &setting;
   }
   return all;
 }
@@ -38,6 +45,21 @@ Keywords allKeywords() {
 const Keywords& settingsByKeyword() {
   static const Keywords all = allKeywords();
   return all;
+}
+
+// What an unknown keyword is: a key of the scene, an option of the command, or a mistake.
+std::string meaningOf(std::string_view keyword) {
+  std::vector<std::string_view> headings;
+  for (const SettingSection& section : settingSections()) {
+    const Setting* key = findSetting(section.name, keyword);
+    if (!section.name.empty() && key && key->option.empty()) headings.push_back(section.heading);
+  }
+  if (!headings.empty())
+    return fmt::format("it is a key of {}: give it in the scene", fmt::join(headings, " and "));
+  for (const Setting& setting : settingTable())
+    if (isOfTheCommand(setting) && withUnderscores(setting.option) == keyword)
+      return "it is an option of the command alone";
+  return didYouMean(keyword, keywords());
 }
 
 }  // namespace
@@ -65,7 +87,7 @@ Settings keywordSettings(const toml::table& values, const std::string& name) {
     const Setting* setting = findKeyword(key.str());
     if (!setting)
       throwInput("{}: unknown keyword `{}`; {}", name, printableName(key.str()),
-                 didYouMean(key.str(), keywords()));
+                 meaningOf(key.str()));
     const Entry entry{name, std::string(key.str()), &value, setting};
     settings.set(setting->name(), entry.value(), fmt::format("{}: {}", name, key.str()));
   }

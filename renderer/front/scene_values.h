@@ -20,10 +20,11 @@ SceneFile sceneOf(toml::table table, const std::string& path);
 void replaceCamera(SceneFile& scene, const toml::table& camera, const std::string& name);
 
 // The settings that a program gives by keywords: the options of `chromeball render` with
-// underscores ("max_depth"), but `layers` for its --aov; and keys of the scene file that are no
-// options and not ambiguous. Those of the command's own files and displays are none.
+// underscores ("max_depth"), but `layers` for its --aov. Those of the command's own files and
+// displays are none.
 std::vector<std::string_view> keywords();
-// Throws InputError, begun by `name`, for an unknown keyword, with the nearest known one.
+// Throws InputError, begun by `name`, for an unknown keyword, with the nearest known one or where
+// it belongs.
 Settings keywordSettings(const toml::table& values, const std::string& name);
 
 const Setting* findKeyword(std::string_view keyword);  // nullptr: there is none

@@ -17,6 +17,7 @@
 #include "scene/gltf/model_cache.h"
 #include "session/live_image.h"
 #include "session/render_loaded.h"
+#include "session/render_messages.h"
 #include "session/render_report.h"
 #include "session/scene_lighting.h"
 #include "trace/built_geometry.h"
@@ -191,6 +192,7 @@ void Session::Implementation::render() {
       renderLoaded(*loaded_, prepared_, progress, stop_, hasTwoPasses ? nullptr : control_.get());
   if (!result.render.interrupted) progress(1);
   result.image.metadata = imageMetadata(*loaded_, result, result.render, result.seconds);
+  result.messages = resultMessages(*loaded_, prepared_, result, callbacks_.words);
   say(result.messages);
   const double samples = result.render.film.meanSampleCount();
   if (samples == 0) return;

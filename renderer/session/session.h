@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/message.h"
+#include "base/setting_words.h"
 #include "description/render_description.h"
 #include "image/io/write_image.h"
 
@@ -40,6 +41,7 @@ struct SessionCallbacks {
   std::function<void(const SessionProgress&)> progress = {};
   std::function<void(const Message&)> message = {};  // notes and warnings, when they are known
   std::function<void()> finished = {};  // the last one of each start, also of one that failed
+  SettingWords words = plainWords;      // in messages about the image
 };
 
 // Loads and renders a description in a background thread, hands out the image so far without

@@ -19,9 +19,9 @@
 #include "noise_in_words.h"
 #include "parts/merge.h"
 #include "progress_bar.h"
-#include "render_hints.h"
 #include "session/image_header.h"
 #include "session/meter_exposure.h"
+#include "session/render_messages.h"
 #include "session/render_report.h"
 
 namespace chromeball {
@@ -72,7 +72,7 @@ void run(const MergeArguments& arguments) {
     const Messages lost = writeImage(output, finished.image, transform);
     messages.insert(messages.end(), lost.begin(), lost.end());
   }
-  addExcluded(whole.result, messages);
+  addExcluded(whole.result, optionInWords, messages);
   print(messages);
   const bool shows = std::ranges::any_of(
       arguments.outputs, [](const std::string& file) { return lowerExtension(file) == ".png"; });

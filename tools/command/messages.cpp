@@ -59,6 +59,11 @@ void print(const Messages& messages) {
   }
 }
 
+std::string optionInWords(std::string_view setting, const std::string& value) {
+  const Setting& row = settingNamed(setting);
+  return value.empty() ? "--" + row.option : optionText(row, value);
+}
+
 std::string inWords(const std::optional<Remedy>& remedy) {
   if (!remedy) return "";
   const auto& table = settingTable();

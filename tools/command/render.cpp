@@ -9,10 +9,10 @@
 #include "interrupt.h"
 #include "lighting/methods.h"
 #include "messages.h"
-#include "render_hints.h"
 #include "scene_options.h"
 #include "session/develop_image.h"
 #include "session/meter_exposure.h"
+#include "session/render_messages.h"
 #include "viewers/viewers.h"
 
 namespace chromeball {
@@ -56,7 +56,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
     for (std::string& file : description.output.files) file = partialName(file);
   writeImages(description, loaded, result, seconds);
 
-  print(resultMessages(loaded, prepared, result));
+  print(resultMessages(loaded, prepared, result, optionInWords));
   printOutcome(description, result, exposure);
 }
 

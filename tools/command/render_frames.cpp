@@ -11,9 +11,9 @@
 #include "image_render.h"
 #include "interrupt.h"
 #include "messages.h"
-#include "render_hints.h"
 #include "session/develop_image.h"
 #include "session/meter_exposure.h"
+#include "session/render_messages.h"
 #include "viewers/viewers.h"
 
 namespace chromeball {
@@ -124,7 +124,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
     if (result.render.interrupted) break;  // an image that exists is a finished one
     addState(scene.loaded(), part, result);
     writeImages(description, scene.loaded(), result, seconds);
-    printNew(resultMessages(scene.loaded(), scene.prepared(), result), printed);
+    printNew(resultMessages(scene.loaded(), scene.prepared(), result, optionInWords), printed);
     say("frame {}: ", frame.number);
     printOutcome(description, result, exposure);
   }

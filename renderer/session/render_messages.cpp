@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render_hints.h"
+#include "session/render_messages.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,8 @@ namespace chromeball {
 namespace {
 
 // The exposure to try if most pixels of a .png are clipped.
-std::optional<std::string> whyWhite(const LoadedScene& loaded, const RenderResult& result) {
+std::optional<std::string> whyWhite(const LoadedScene& loaded, const RenderResult& result,
+                                    const SettingWords& words) {
   const RenderDescription& description = loaded.description;
   const bool hasPng = std::any_of(description.output.files.begin(), description.output.files.end(),
                                   [](const auto& path) { return lowerExtension(path) == ".png"; });
@@ -31,9 +32,11 @@ std::optional<std::string> whyWhite(const LoadedScene& loaded, const RenderResul
   const auto high = brightest.begin() + std::ptrdiff_t(brightest.size() * 9 / 10);
   std::nth_element(brightest.begin(), high, brightest.end());
   std::string hint =
-      fmt::format("{:.0f}% of the .png's pixels are clipped; try --exposure {:.0f}",
-                  100 * double(clipped) / double(brightest.size()), std::floor(-std::log2(*high)));
-  if (!loaded.scene.lights.empty()) hint += ", or dim the model's lights with --lights FACTOR";
+      fmt::format("{:.0f}% of the .png's pixels are clipped; try {}",
+                  100 * double(clipped) / double(brightest.size()),
+                  words("output.exposure", fmt::format("{:.0f}", std::floor(-std::log2(*high)))));
+  if (!loaded.scene.lights.empty())
+    hint += ", or dim the model's lights with " + words("lighting.lights", "FACTOR");
   return hint;
 }
 
@@ -42,17 +45,20 @@ bool isOfDirect(DepthLimit limit, const RenderSettings& settings) {
          settings.maxDepth > 0;
 }
 
-void addDepthCuts(const RenderSettings& settings, const DepthCut& cut, Messages& messages) {
+void addDepthCuts(const RenderSettings& settings, const DepthCut& cut, const SettingWords& words,
+                  Messages& messages) {
   constexpr double kMinFraction = 0.01;
   for (size_t i = 0; i < DepthCut::kLimits; ++i) {
     const DepthLimit limit = DepthLimit(i);
     const double fraction = cut.fraction(limit);
     if (!(fraction > kMinFraction)) continue;
-    const char* remedy = !isOfDirect(limit, settings) ? "a higher one"
-                         : settings.maxDepth > 1      ? "--integrator path"
-                                                 : "--integrator path with a higher --max-depth";
+    const std::string path = words("render.integrator", "path");
+    const std::string remedy = !isOfDirect(limit, settings) ? "a higher one"
+                               : settings.maxDepth > 1
+                                   ? path
+                                   : path + " with a higher " + words("render.max_depth", {});
     addWarning(messages, "{} cut about {:.3g}% of the light; {} keeps it",
-               limitGiven(limit, settings), 100 * fraction, remedy);
+               limitInWords(limit, settings, words), 100 * fraction, remedy);
   }
 }
 
@@ -76,38 +82,39 @@ void addNoiseLimit(const RenderDescription& description, const FinishedRender& r
 
 }  // namespace
 
-std::string limitGiven(DepthLimit limit, const RenderSettings& settings) {
-  if (isOfDirect(limit, settings)) return "--integrator direct";
+std::string limitInWords(DepthLimit limit, const RenderSettings& settings,
+                         const SettingWords& words) {
+  if (isOfDirect(limit, settings)) return words("render.integrator", "direct");
   const std::array values = {settings.maxDepth, settings.maxDiffuseDepth, settings.maxSpecularDepth,
                              settings.maxTransmissionDepth};  // as DepthLimit
-  std::string option(kDepthLimitNames[size_t(limit)]);
-  std::ranges::replace(option, '_', '-');
-  return fmt::format("--{} {}", option, values[size_t(limit)]);
+  return words(fmt::format("render.{}", kDepthLimitNames[size_t(limit)]),
+               std::to_string(values[size_t(limit)]));
 }
 
-void addExcluded(const RenderResult& result, Messages& messages) {
+void addExcluded(const RenderResult& result, const SettingWords& words, Messages& messages) {
   const auto warning = [&](std::string text) {
     messages.push_back({Message::Kind::Warning, std::move(text)});
   };
   if (const InvalidSamples& invalid = result.invalid; invalid.total())
-    warning(
-        fmt::format("{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), "
-                    "the first at pixel ({}, {}); --aov invalid shows where",
-                    invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
-                    invalid.of(Defect::Negative), invalid.x, invalid.y));
+    warning(fmt::format(
+        "{} invalid samples were left out ({} with a NaN, {} infinite, {} negative), "
+        "the first at pixel ({}, {}); {} shows where",
+        invalid.total(), invalid.of(Defect::Nan), invalid.of(Defect::Infinite),
+        invalid.of(Defect::Negative), invalid.x, invalid.y, words("output.aovs", "invalid")));
   const bool isComposite = !result.layers.empty() && result.groups.empty();
   if (result.clamped.count)
-    warning(fmt::format("--clamp scaled {} samples down, and removed {:.3g}% of the light of {}",
-                        result.clamped.count, 100 * result.clamped.fractionRemoved(),
+    warning(fmt::format("{} scaled {} samples down, and removed {:.3g}% of the light of {}",
+                        words("clamp", {}), result.clamped.count,
+                        100 * result.clamped.fractionRemoved(),
                         isComposite ? "objects and differences" : "the image"));
 }
 
 Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,
-                        const FinishedRender& result) {
+                        const FinishedRender& result, const SettingWords& words) {
   const RenderDescription& description = loaded.description;
   Messages messages;
-  addExcluded(result.render, messages);
-  addDepthCuts(description.settings, result.render.depthCut, messages);
+  addExcluded(result.render, words, messages);
+  addDepthCuts(description.settings, result.render.depthCut, words, messages);
   messages.insert(messages.end(), result.messages.begin(), result.messages.end());
   const RenderSettings& settings = description.settings;
   if (settings.clamp && result.render.clamped.count == 0)
@@ -116,9 +123,9 @@ Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared
   if (!settings.isPart()) addNoiseLimit(description, result, messages);
   if (description.composite || description.settings.isPart()) return messages;
   if (!result.render.interrupted)
-    if (const auto why = whyBlack(loaded, prepared.world->accel, result.render))
+    if (const auto why = whyBlack(loaded, prepared.world->accel, result.render, words))
       messages.push_back({Message::Kind::Warning, *why});
-  if (const auto why = whyWhite(loaded, result.render))
+  if (const auto why = whyWhite(loaded, result.render, words))
     messages.push_back({Message::Kind::Note, *why});
   return messages;
 }

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains why a rendered image shows nothing.
-#include "render_hints.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
+#include "base/parallel.h"
 #include "math/icosphere.h"
 #include "scene/surface.h"
+#include "session/render_messages.h"
 #include "trace/accel.h"
 
 namespace chromeball {
@@ -30,6 +31,18 @@ std::optional<Surface> firstSurface(const Accel& accel, Ray ray, const Stops& st
     ray = rayFrom(surface, ray.direction, left);
   }
   return std::nullopt;
+}
+
+// Over the sphere, in W/(m^2 sr).
+float meanLuminance(const Probe& probe) {
+  std::vector<double> rows(size_t(probe.height()));
+  parallelFor(0, probe.height(), [&](int y) {
+    double& sum = rows[size_t(y)];
+    for (int x = 0; x < probe.width(); ++x) sum += luminance(probe.corners(x, y + 1).c00);
+    const double top = kPiD * y / probe.height(), bottom = kPiD * (y + 1) / probe.height();
+    sum *= std::cos(top) - std::cos(bottom);
+  });
+  return float(std::reduce(rows.begin(), rows.end()) / (2 * probe.width()));
 }
 
 // The surfaces that the camera sees through the pixels of a grid.
@@ -102,7 +115,7 @@ std::vector<Target> lightsOf(const LoadedScene& loaded) {
 }
 
 // Whether single-sided walls alone hide the light from the surface: a ray to it passes the fronts
-// of some, which it would with --single-sided light, and meets nothing else.
+// of some, which it would if sides counted for light, and meets nothing else.
 bool isBehindWalls(const Accel& accel, const Surface& surface, const std::vector<Target>& lights) {
   return std::ranges::any_of(lights, [&](const Target& light) {
     const vec3 way = light.position ? *light.position - surface.position : light.direction;
@@ -150,17 +163,19 @@ std::string whyNoneShows(const Scene& scene) {
                  : "no surface is visible: all triangles have no area";
 }
 
-std::string noneInView(const Scene& scene, const Seen& seen) {
+std::string noneInView(const Scene& scene, const Seen& seen, const SettingWords& words) {
   if (const std::string cause = whyNoneShows(scene); !cause.empty()) return cause;
   if (seen.hidden > 0)
     return "no surface is in view: the camera is behind single-sided ones, whose backs it does not "
-           "see; try --single-sided off, or another camera";
+           "see; try " +
+           words("render.single_sided", "off") + ", or another camera";
   return "no surface is in view; try another camera";
 }
 
-// The limits that took light which the paths would have found; nearly all, by --clamp. Much of the
-// light may be that of the background.
-std::vector<std::string> limitsOf(const RenderSettings& settings, const RenderResult& result) {
+// The limits that took light which the paths would have found; nearly all, by the clamp. Much of
+// the light may be that of the background.
+std::vector<std::string> limitsOf(const RenderSettings& settings, const RenderResult& result,
+                                  const SettingWords& words) {
   constexpr double kLeast = 1e-3, kNearlyAll = 0.95;
   std::vector<std::string> limits;
   for (size_t i = 0; i < DepthCut::kLimits; ++i) {
@@ -168,20 +183,21 @@ std::vector<std::string> limitsOf(const RenderSettings& settings, const RenderRe
     // Of few samples, the estimate may have none.
     const bool isZero = limit == DepthLimit::Diffuse && settings.maxDiffuseDepth == 0;
     if (isZero || result.depthCut.fraction(limit) > kLeast)
-      limits.push_back(limitGiven(limit, settings));
+      limits.push_back(limitInWords(limit, settings, words));
   }
   if (result.clamped.fractionRemoved() > kNearlyAll)
-    limits.push_back(fmt::format("--clamp {:g}", *settings.clamp));
+    limits.push_back(words("clamp", fmt::format("{:g}", *settings.clamp)));
   return limits;
 }
 
 // The settings that left light out before anything was rendered.
-std::vector<std::string> removedLight(const LoadedScene& loaded) {
+std::vector<std::string> removedLight(const LoadedScene& loaded, const SettingWords& words) {
   const LightingDescription& lighting = loaded.description.lighting;
   std::vector<std::string> removed;
-  if (lighting.from == LightFrom::Suns) removed.push_back("--light-from suns");
-  if (lighting.from == LightFrom::Rest) removed.push_back("--light-from rest");
-  if (lighting.lamps == 0 && loaded.hasModelLights) removed.push_back("--lights off");
+  if (lighting.from == LightFrom::Suns) removed.push_back(words("lighting.from", "suns"));
+  if (lighting.from == LightFrom::Rest) removed.push_back(words("lighting.from", "rest"));
+  if (lighting.lamps == 0 && loaded.hasModelLights)
+    removed.push_back(words("lighting.lights", "off"));
   return removed;
 }
 
@@ -193,24 +209,26 @@ std::string noLightWith(const std::vector<std::string>& settings) {
 }  // namespace
 
 std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
-                                    const RenderResult& result) {
+                                    const RenderResult& result, const SettingWords& words) {
   const RenderDescription& description = loaded.description;
   const Image mean = result.film.mean();
   constexpr float kDark = 1e-4f;  // of the probe's mean
   constexpr double kMax = 0.8, kNearlyAll = 0.95;
   constexpr int kGrid = 48, kFine = 1024;
-  const float probeMean = luminance(Rgb(meanRadiance(loaded.probe.latLong())));
+  const float probeMean = meanLuminance(loaded.probe);
   const Seen seen = lookThrough(loaded, accel, mean, kDark * probeMean, kGrid);
   if (seen.surfaces == 0) {
     const Seen finer = lookThrough(loaded, accel, mean, 0, kFine);
-    return finer.surfaces == 0 ? std::optional(noneInView(loaded.scene, finer)) : std::nullopt;
+    return finer.surfaces == 0 ? std::optional(noneInView(loaded.scene, finer, words))
+                               : std::nullopt;
   }
   const double black = double(seen.black.size()) / seen.surfaces;
   if (description.settings.maxDepth == 0 || black < kMax)
     return std::nullopt;  // at 0, only emitters shine
   const std::string what = fmt::format("{:.0f}% of the visible surfaces are black: ", 100 * black);
-  if (description.probe.scale == glm::dvec3(0)) return what + "--probe-scale 0 turns the probe off";
-  if (const auto limits = limitsOf(description.settings, result); !limits.empty())
+  if (description.probe.scale == glm::dvec3(0))
+    return what + words("probe.scale", "0") + " turns the probe off";
+  if (const auto limits = limitsOf(description.settings, result, words); !limits.empty())
     return what + noLightWith(limits);
   const auto absorbing = std::ranges::count_if(
       seen.black, [&](const Surface& surface) { return absorbsAll(loaded.scene, surface); });
@@ -221,13 +239,12 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
   const bool lets = std::ranges::any_of(loaded.scene.materials,
                                         [](const Material& m) { return m.backLetsLightThrough(); });
   if (!lets && 2 * size_t(behindWalls) > seen.black.size())
-    return what +
-           "single-sided walls, which the camera sees through, block the light; try --single-sided "
-           "light, or add lamps with [[light]] in a scene file";
+    return what + "single-sided walls, which the camera sees through, block the light; try " +
+           words("render.single_sided", "light") + ", or add lamps with [[light]] in a scene file";
   if (black < kNearlyAll) return std::nullopt;
-  if (const auto removed = removedLight(loaded); !removed.empty())
+  if (const auto removed = removedLight(loaded, words); !removed.empty())
     return what + noLightWith(removed);
-  if (lights.empty() && description.probe.file)
+  if (lights.empty() && (description.probe.file || description.probe.map))
     return what + "the probe is black; take another, or add lamps with [[light]] in a scene file";
   return what + "no light reaches them; add lamps with [[light]] in a scene file";
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said to the user about a rendered image, with suggestions of options.
+// What is said about a rendered image.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "base/setting_words.h"
 #include "render/render.h"
 #include "session/load_scene.h"
 #include "session/render_loaded.h"
@@ -15,18 +16,19 @@ namespace chromeball {
 // The messages of `result`, and messages about excluded samples, clamped light, light beyond the
 // depth limits, and images that are nearly black or mostly clipped.
 Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared,
-                        const FinishedRender& result);
+                        const FinishedRender& result, const SettingWords& words);
 
-// The option that sets a limit of depth, as it is typed: "--max-depth 8", "--integrator direct".
-std::string limitGiven(DepthLimit limit, const RenderSettings& settings);
+// A limit of depth: "--max-depth 8", "--integrator direct".
+std::string limitInWords(DepthLimit limit, const RenderSettings& settings,
+                         const SettingWords& words);
 
 // Only the messages about excluded samples and clamped light.
-void addExcluded(const RenderResult& result, Messages& messages);
+void addExcluded(const RenderResult& result, const SettingWords& words, Messages& messages);
 
-// The likely cause, with the option to try, if no surface is in view or nearly all that are have
+// The likely cause, with the setting to try, if no surface is in view or nearly all that are have
 // remained black; nullopt otherwise. Limits and parts of the light that took what there was are
 // named first.
 std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& accel,
-                                    const RenderResult& result);
+                                    const RenderResult& result, const SettingWords& words);
 
 }  // namespace chromeball
