@@ -11,13 +11,15 @@ namespace chromeball {
 namespace {
 
 // The values that decide the light, and the place and size of the picture, under the names of
-// describe(). Changes of these, or of the settings of the integrator, need no new scene.
+// describe(). Changes of these, or of the settings of the integrator, need no new scene, unless the
+// models decide the view, and it is another one (session/place_models.h).
 constexpr std::array kOfProbe = {"probe", "probe-mapping", "probe-rotation", "probe-scale",
                                  "probe-in-memory"};
 constexpr std::array kOfLighting = {"strategy",    "mis",        "sun-angle",
                                     "show-lights", "integrator", "aov"};
-constexpr std::array kOfCamera = {"camera", "camera-file", "scene-camera", "lens", "optics",
-                                  "orbit",  "zoom",        "size",         "crop"};
+constexpr std::array kOfCamera = {"camera", "camera-file", "scene-camera", "lens",
+                                  "optics", "orbit",       "zoom",         "size",
+                                  "crop",   "fov",         "view",         "look-at"};
 constexpr std::array kOfPaths = {"noise-limit",
                                  "time-limit",
                                  "shard",
@@ -56,13 +58,11 @@ Differences::Differences(const RenderDescription& a, const RenderDescription& b)
     d.scene.reset(), d.probe.map.reset();
     return describe(d);
   };
-  // The field of view of an automatic camera decides where it stands, as the scene is loaded.
-  const bool isPlaced = a.camera.placed && b.camera.placed;
   const nlohmann::ordered_json was = fromFiles(a), is = fromFiles(b);
   for (const auto* one : {&was, &is})
     for (const auto& [name, ignored] : one->items())
       if (was.value(name, nlohmann::ordered_json()) != is.value(name, nlohmann::ordered_json()))
-        names_.insert(isPlaced && name == "fov" ? "lens" : name);
+        names_.insert(name);
 }
 
 bool Differences::keepScene() const { return std::ranges::all_of(names_, keepsScene); }

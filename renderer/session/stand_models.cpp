@@ -15,13 +15,6 @@ bool hasNamedGround(const RenderDescription& description) {
   return description.composite && description.composite->ground == GroundPlane::IfNamed;
 }
 
-// Where the models' lowest point shall be.
-double floorOf(const RenderDescription& description) {
-  const auto& composite = description.composite;
-  if (composite && composite->ground == GroundPlane::Always) return composite->groundHeight;
-  return description.stand.height.value_or(0);
-}
-
 dmat3 turnOf(const RenderDescription& description) {
   const double angle = glm::radians(description.stand.turntable.value_or(0));
   return glm::mat3_cast(glm::angleAxis(angle, dvec3(0, 1, 0)));
@@ -34,8 +27,16 @@ bool needsStand(const RenderDescription& description) {
   return stand.movesModels() || stand.hasGround || hasNamedGround(description);
 }
 
+std::optional<double> floorOf(const RenderDescription& description) {
+  if (!description.stand.drops) return {};
+  const auto& composite = description.composite;
+  if (composite && composite->ground == GroundPlane::Always) return composite->groundHeight;
+  return description.stand.height.value_or(0);
+}
+
 double dropOf(const RenderDescription& description, double lowest) {
-  return description.stand.drops ? floorOf(description) - lowest : 0;
+  const std::optional<double> floor = floorOf(description);
+  return floor ? *floor - lowest : 0;
 }
 
 std::vector<ModelEntry> standing(const RenderDescription& description,

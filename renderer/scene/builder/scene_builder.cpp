@@ -212,7 +212,14 @@ void SceneBuilder::addInstance(int mesh, int material, int node,
     throwInput(
         "instance {} (\"{}\"): its transform is not invertible, or beyond the range of float",
         scene_.instances.size(), scene_.nodeNames[size_t(node)]);
-  scene_.instances.push_back({mesh, material, node, toWorld, moves});
+  scene_.instances.push_back(
+      {.mesh = mesh, .material = material, .node = node, .toWorld = toWorld, .moves = moves});
+}
+
+void SceneBuilder::addInstance(int mesh, int material, int node, const glm::dmat4& toWorld) {
+  const glm::dvec3 translation(toWorld[3]);
+  addInstance(mesh, material, node, Transform{glm::mat3(glm::dmat3(toWorld)), vec3(translation)});
+  scene_.instances.back().translationRest = translation - glm::dvec3(vec3(translation));
 }
 
 int SceneBuilder::addCamera(Camera camera) {
