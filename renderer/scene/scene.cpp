@@ -105,6 +105,7 @@ void append(Scene& scene, Scene&& other) {
   scene.moves |= other.moves;
 }
 
+// The scene is one of a builder, where nothing moves while the shutter is open.
 void moveOrigin(Scene& scene, const glm::dvec3& origin) {
   if (origin == glm::dvec3(0)) return;
   const auto moved = [&](const vec3& p) { return vec3(glm::dvec3(p) - origin); };
@@ -112,20 +113,13 @@ void moveOrigin(Scene& scene, const glm::dvec3& origin) {
   for (const Instance& instance : scene.instances) ++users[size_t(instance.mesh)];
   for (Instance& instance : scene.instances) {
     const bool sharesMesh = users[size_t(instance.mesh)] > 1;
-    if (instance.toWorld || instance.motion || sharesMesh) {
+    if (instance.toWorld || sharesMesh) {
       Transform& t = instance.toWorld ? *instance.toWorld : instance.toWorld.emplace();
       t.translation = vec3(glm::dvec3(t.translation) + instance.translationRest - origin);
       instance.translationRest = glm::dvec3(0);
     } else {
       for (vec3& p : scene.meshes.edit(size_t(instance.mesh)).positions) p = moved(p);
     }
-    if (!instance.motion) continue;
-    InstanceMotion motion = *instance.motion;
-    for (InstanceMotion::Key& key : motion.keys) {
-      Transform& t = key.toWorld ? *key.toWorld : key.toWorld.emplace();
-      t.translation = moved(t.translation);
-    }
-    instance.motion = std::make_shared<const InstanceMotion>(std::move(motion));
   }
   for (Camera& camera : scene.cameras) camera.position = moved(camera.position);
   for (PunctualLight& light : scene.lights) light.position = moved(light.position);
