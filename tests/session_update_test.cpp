@@ -173,6 +173,34 @@ TEST(SessionUpdate, AFarModelThatMovesALittle) {
   EXPECT_TRUE(show(session, d, "moved by half a metre").loadedScene);
 }
 
+// Models of one name in two folders, and an animation that is chosen and not any more.
+TEST(SessionUpdate, OtherFoldersAndAnimations) {
+  GltfWriter still, moving;
+  addTriangle(still);
+  addTriangle(moving, {}, {{"scale", {2, 1, 1}}});
+  const int times = moving.accessor(moving.view(std::vector<float>{0, 1}), kFloat, "SCALAR", 2);
+  moving.add("animations",
+             {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+              {"samplers", {{{"input", times}, {"output", moving.vec3s({0, 0, 0, 1, 2, 0})}}}}});
+  RenderDescription d = automatic(false);
+  d.scene.reset();
+  d.models = {{.file = still.save(), .placement = {}, .choice = {}}};
+  Session session(d);
+  show(session, d, "first");
+  d.models[0].file = moving.save();
+  show(session, d, "another folder");
+  d.models[0].choice.animation = AnimationTime{};
+  show(session, d, "an animation");
+  d.models[0].choice.animation->seconds = 0.5;
+  show(session, d, "another time");
+  d.size = ImageSize{12, 24};
+  show(session, d, "another image");
+  place(d);
+  show(session, d, "placed");
+  d.models[0].choice.animation.reset();
+  show(session, d, "at rest");
+}
+
 // Files with times of their own, so that each write is seen.
 class ChangedFiles : public testing::Test {
  protected:

@@ -49,10 +49,25 @@ bool hasAny(const std::array<const char*, N>& names, const std::set<std::string>
   return std::ranges::any_of(of, [&](const std::string& name) { return has(names, name); });
 }
 
+// What describe() leaves out: folders of models, and animations that no setting has chosen. Another
+// time of an animation is another frame of the same scene.
+bool haveSameModels(const RenderDescription& a, const RenderDescription& b) {
+  const auto roomOf = [](const RenderDescription& d) {
+    return d.surroundings ? d.surroundings->shape.model : std::string();
+  };
+  const auto isSame = [](const ModelEntry& m, const ModelEntry& n) {
+    const auto &x = m.choice.animation, &y = n.choice.animation;
+    return m.file == n.file && x.has_value() == y.has_value() &&
+           (!x || (x->name == y->name && x->ifAny == y->ifAny));
+  };
+  return roomOf(a) == roomOf(b) && std::ranges::equal(a.models, b.models, isSame);
+}
+
 }  // namespace
 
 Differences::Differences(const RenderDescription& a, const RenderDescription& b) {
   if (a.scene != b.scene) names_.insert("scene-in-memory");
+  if (!haveSameModels(a, b)) names_.insert("models");
   if (a.probe.map != b.probe.map) names_.insert("probe-in-memory");
   const auto fromFiles = [](RenderDescription d) {
     d.scene.reset(), d.probe.map.reset();
