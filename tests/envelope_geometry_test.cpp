@@ -168,7 +168,7 @@ TEST(EnvelopeGeometry, ArraysFarFromTheOrigin) {
     place[3] = glm::dvec4(at + glm::dvec3(0.01, 0.5, 0), 1);
     builder.addInstance(ball, grey, builder.addNode("ball"), place);
     addQuad(*scene, grey, vec3(at) + vec3(-2, 0, 2), {4, 0, 0}, {0, 0, -4});
-    builder.addLight({.intensity = Rgb(5), .position = vec3(at) + vec3(2, 3, 1)});
+    builder.addLight({.intensity = Rgb(1), .position = vec3(at) + vec3(2, 3, 1)});
     Camera camera = Camera::lookAt({0, 1, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.6f);
     camera.position += vec3(at);
     builder.addCamera(camera);
@@ -181,10 +181,9 @@ TEST(EnvelopeGeometry, ArraysFarFromTheOrigin) {
     return renderLoaded(loadScene(d)).color();
   };
   const Image near = renderAt({0, 0, 0}), far = renderAt({1e6, -2e6, 3e6});
-  double squares = 0;
-  for (size_t i = 0; i < near.texels.size(); ++i)
-    squares += std::pow(near.texels[i] - far.texels[i], 2);
-  EXPECT_LT(std::sqrt(squares / double(near.texels.size())), 5e-3);
+  double sum = 0;
+  for (size_t i = 0; i < near.texels.size(); ++i) sum += std::fabs(near.texels[i] - far.texels[i]);
+  EXPECT_LT(sum / double(near.texels.size()), 1e-3);
 }
 
 TEST(EnvelopeGeometry, DegenerateTriangles) {

@@ -133,7 +133,7 @@ void expectAnyOrder(bool isClosed) {
 }
 
 TEST(SessionUpdate, AnyViewAfterAnyOther) { expectAnyOrder(false); }
-TEST(SessionUpdate, AnyViewOfARoomAfterAnyOther) { expectAnyOrder(true); }
+TEST(SlowSessionUpdate, AnyViewOfARoomAfterAnyOther) { expectAnyOrder(true); }
 
 // A view that does not depend on what differs is kept.
 TEST(SessionUpdate, OnlyAnotherViewLoadsTheScene) {

@@ -118,7 +118,8 @@ void replaceModels(RenderDescription& description, LoadedScene& loaded, ModelCac
   loaded.hasModelLights = models.hasLights;
   loaded.moves = models.moves;
   loaded.modelWarnings = std::move(models.warnings);
-  if (!description.probe.file && !models.scene.environment) checkLit(description, models.scene);
+  if (!description.probe.file && !description.probe.map && !models.scene.environment)
+    checkLit(description, models.scene);
   shareMeshes(loaded.scene, models.scene);
   change.geometry = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
   if (change.geometry) loaded.scene = std::move(models.scene);
