@@ -2,6 +2,7 @@
 #include "session/stand_models.h"
 
 #include "composite/local_scene.h"
+#include "math/float_rest.h"
 #include "scene/bounds.h"
 
 namespace chromeball {
@@ -49,7 +50,7 @@ std::vector<ModelEntry> standing(const RenderDescription& description,
     const dvec3 at = dvec3(placement.translation) + model.translationRest;
     const dvec3 moved = view.axis + turn * (at - view.axis) + drop;
     placement = {glm::mat3(turn * dmat3(placement.linear)), vec3(moved)};
-    model.translationRest = moved - dvec3(placement.translation);
+    model.translationRest = floatRest(moved);
   }
   return models;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "math/float_rest.h"
 #include "math/vec.h"
 #include "scene/builder/complete_mesh.h"
 #include "scene/motion.h"
@@ -219,7 +220,7 @@ void SceneBuilder::addInstance(int mesh, int material, int node,
 void SceneBuilder::addInstance(int mesh, int material, int node, const glm::dmat4& toWorld) {
   const glm::dvec3 translation(toWorld[3]);
   addInstance(mesh, material, node, Transform{glm::mat3(glm::dmat3(toWorld)), vec3(translation)});
-  scene_.instances.back().translationRest = translation - glm::dvec3(vec3(translation));
+  scene_.instances.back().translationRest = floatRest(translation);
 }
 
 int SceneBuilder::addCamera(Camera camera) {
