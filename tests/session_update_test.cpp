@@ -247,7 +247,7 @@ class ChangedFiles : public testing::Test {
 
  private:
   GltfWriter model_;
-  FileStamps::Time time_ = FileStamps::Time::clock::now() - 1h;
+  FileStamps::Time time_ = FileStamps::now() - 1h;
 };
 
 TEST_F(ChangedFiles, AreReadAgain) {
@@ -298,7 +298,7 @@ TEST_F(ChangedFiles, AreReadAgainAfterAnotherModel) {
 TEST(FileStamps, TellChangesFromTheTimeOfReadingOn) {
   const TemporaryFolder folder;
   const std::string file = folder / "file", link = folder / "link", missing = folder / "missing";
-  const auto now = FileStamps::Time::clock::now(), begin = now - 1min;
+  const auto now = FileStamps::now(), begin = now - 1min;
   const auto write = [&](const std::string& name, const char* text, FileStamps::Time time) {
     std::ofstream(name) << text;
     std::filesystem::last_write_time(name, time);

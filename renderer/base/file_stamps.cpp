@@ -14,8 +14,10 @@ FileStamps::Stamp::Stamp(const std::string& file) {
   written = std::filesystem::last_write_time(file, ignored);
 }
 
+FileStamps::Time FileStamps::now() { return Time::clock::now(); }
+
 void FileStamps::add(const std::vector<std::string>& files, Time begin) {
-  const Time end = Time::clock::now();
+  const Time end = now();
   for (const std::string& file : files) {
     const Stamp stamp(file);
     const bool isWritten = stamp.written > begin && stamp.written <= end;

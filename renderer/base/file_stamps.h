@@ -14,6 +14,7 @@ namespace chromeball {
 class FileStamps {
  public:
   using Time = std::filesystem::file_time_type;
+  static Time now();
 
   // Files that were read from `begin` on; those that were written meanwhile count as changed.
   void add(const std::vector<std::string>& files, Time begin);

@@ -12,7 +12,7 @@
 #include "front/scene_file_sections.h"
 #include "front/scene_values.h"
 #include "front/toml_section.h"
-#include "math/float_rest.h"
+#include "scene/float_rest.h"
 
 namespace chromeball {
 namespace {

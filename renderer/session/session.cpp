@@ -221,7 +221,7 @@ void Session::Implementation::prepare() {
 void Session::Implementation::load() {
   work_ = {.loadedScene = true, .loadedProbe = true, .preparedLighting = true};
   if (!stamps_.areCurrent()) models_ = {}, stamps_ = {};
-  const auto begin = FileStamps::Time::clock::now();
+  const auto begin = FileStamps::now();
   ModelCache models = models_;
   LoadedScene scene = loadScene(description_, &models);
   models_ = std::move(models);
@@ -262,7 +262,7 @@ void Session::Implementation::changeWhatDiffers() {
       !isViewOf(description_, loaded_->scene, loaded_->view) ||
       (differences.inProbe() && !(hasProbe(*given_) && hasProbe(description_))))
     return load();
-  const auto begin = FileStamps::Time::clock::now();
+  const auto begin = FileStamps::now();
   FrameChange change;
   try {
     change = loadFrame(description_, *loaded_, models_, hasStaleProbe());

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/error.h"
-#include "math/float_rest.h"
 #include "math/vec.h"
 #include "scene/builder/complete_mesh.h"
+#include "scene/float_rest.h"
 #include "scene/motion.h"
 #include "scene/texture.h"
 
