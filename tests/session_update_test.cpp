@@ -113,10 +113,11 @@ const std::vector<View> kViews = {
 
 // Each view follows each other one.
 void expectAnyOrder(bool isClosed) {
+  const RenderDescription first = automatic(isClosed);  // all have its scene
   std::vector<RenderDescription> descriptions;
   std::vector<std::vector<float>> expected;
   for (const View& view : kViews) {
-    RenderDescription d = automatic(isClosed);
+    RenderDescription d = first;
     view.choose(d);
     expected.push_back(freshRender(d));
     descriptions.push_back(std::move(d));
