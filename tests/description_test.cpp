@@ -206,20 +206,6 @@ TEST(Description, OnlyWhatTheSceneIsMadeOfLoadsItAgain) {
   EXPECT_EQ(loadAgain, ofTheScene);
 }
 
-// A field of view decides where an automatic camera stands.
-TEST(Description, LensesOfPlacedCamerasLoadNoScene) {
-  RenderDescription automatic;
-  for (const bool isPlaced : {false, true}) {
-    RenderDescription one = automatic;
-    if (isPlaced) one.camera.placed.emplace();
-    RenderDescription other = one;
-    other.camera.zoom = 2;
-    EXPECT_TRUE(Differences(one, other).keepScene());
-    other.camera.fov = 30;
-    EXPECT_EQ(Differences(one, other).keepScene(), isPlaced);
-  }
-}
-
 // This holds also where the scene is far from the world's origin. Only the image's size may come
 // from the models.
 TEST(Description, LoadingChangesNothingOfTheDescription) {

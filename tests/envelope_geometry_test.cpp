@@ -12,6 +12,8 @@
 #include "image/io/write_image.h"
 #include "probe/synth.h"
 #include "run_command.h"
+#include "scene/builder/scene_builder.h"
+#include "session/render_loaded.h"
 
 namespace chromeball::envelope_geometry_test {
 namespace {
@@ -150,6 +152,38 @@ TEST(EnvelopeGeometry, ASmallObjectFarFromTheOrigin) {
   const CommandResult beyond = renderAt({1e10, 0, 0}, "beyond.pfm");
   EXPECT_EQ(beyond.status, 2);
   EXPECT_NE(beyond.error.find("scale it down"), std::string::npos) << beyond.error;
+}
+
+// A model of arrays by transforms, vertices, a camera and a lamp; the offset of the ball is no
+// float, the others are.
+TEST(EnvelopeGeometry, ArraysFarFromTheOrigin) {
+  const auto renderAt = [](const glm::dvec3& at) {
+    Scene local;
+    addSphere(local, addMaterial(local, lambert(Rgb(0.5f))), {0, 0, 0}, 0.5f, 16);
+    auto scene = std::make_shared<Scene>();
+    SceneBuilder builder(*scene);
+    const int grey = builder.addMaterial(lambert(Rgb(0.5f)));
+    const int ball = builder.addMesh(local.meshes.shared(0));
+    glm::dmat4 place(1);
+    place[3] = glm::dvec4(at + glm::dvec3(0.01, 0.5, 0), 1);
+    builder.addInstance(ball, grey, builder.addNode("ball"), place);
+    addQuad(*scene, grey, vec3(at) + vec3(-2, 0, 2), {4, 0, 0}, {0, 0, -4});
+    builder.addLight({.intensity = Rgb(1), .position = vec3(at) + vec3(2, 3, 1)});
+    Camera camera = Camera::lookAt({0, 1, 4}, {0, 0.5f, 0}, {0, 1, 0}, 0.6f);
+    camera.position += vec3(at);
+    builder.addCamera(camera);
+    RenderDescription d;
+    d.scene = scene;
+    d.probe.map = std::make_shared<const Image>(gradientProbe({32, 16}, Rgb(1), {0.2, 0.7, 0.3}));
+    d.lighting.strategy = "importance";
+    d.size = ImageSize{24, 24};
+    d.settings.samples = 16;
+    return renderLoaded(loadScene(d)).color();
+  };
+  const Image near = renderAt({0, 0, 0}), far = renderAt({1e6, -2e6, 3e6});
+  double sum = 0;
+  for (size_t i = 0; i < near.texels.size(); ++i) sum += std::fabs(near.texels[i] - far.texels[i]);
+  EXPECT_LT(sum / double(near.texels.size()), 1e-3);
 }
 
 TEST(EnvelopeGeometry, DegenerateTriangles) {

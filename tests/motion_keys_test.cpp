@@ -3,6 +3,7 @@
 // the motion.
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "front/plan_render.h"
 #include "gltf_writer.h"
 #include "image/io/read_image.h"
@@ -92,6 +93,22 @@ TEST(MotionKeys, LampsMoveThoughOneVanishes) {
     EXPECT_NEAR(scene.scene.lights[1].poseAt(time).position.x, -2 + 4 * time, 1e-5);
   EXPECT_TRUE(says(scene, "`ghost` appears, vanishes or is mirrored"));
   EXPECT_FALSE(says(scene, "`mover`"));
+}
+
+TEST(MotionKeys, ACameraThatVanishesIsRefused) {
+  Animated w;
+  addTriangle(w);
+  w.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", .8}, {"znear", .1}}}});
+  const int camera = w.add("nodes", {{"camera", 0}, {"translation", {0, 0, 3}}});
+  w.animate(camera, "scale", "VEC3", {1, 1, 1, 0, 0, 0}, "STEP");
+  try {
+    loaded(w.save(), openShutterFor(1, 4));
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("vanishes while the shutter is open"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 // Half a turn along one chord: its middle is 1 m away from where the lamp or the camera is.

@@ -264,5 +264,23 @@ TEST(View, ClosedRoomsAreDark) {
   EXPECT_FALSE(isDark(false, true, {}));
 }
 
+// So do those around a node that is looked at, but not those beside it.
+TEST(View, NodesInClosedRoomsAreDark) {
+  const auto isDark = [](bool hasWindow, float x, const char* node) {
+    Scene room = empty();
+    room.nodeNames = {"room", "table"};
+    addBox(room, {0, 0, 0}, {8, 3, 5}, true);
+    if (hasWindow) room.meshes.pop_back(), room.instances.pop_back();
+    const size_t walls = room.instances.size();
+    addBox(room, {x, 0, 2}, {x + 2, 1, 3});
+    for (size_t i = walls; i < room.instances.size(); ++i) room.instances[i].node = 1;
+    return Framing(room, kAspect, {.node = node}).isDark();
+  };
+  EXPECT_TRUE(isDark(false, 3, "table"));
+  EXPECT_TRUE(isDark(false, 3, "room"));
+  EXPECT_FALSE(isDark(true, 3, "table"));
+  EXPECT_FALSE(isDark(false, 20, "table"));
+}
+
 }  // namespace
 }  // namespace chromeball::view_test

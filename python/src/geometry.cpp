@@ -11,13 +11,11 @@
 namespace chromeball::python {
 namespace {
 
-Transform transformOf(const ArrayIn<double>& matrix) {
-  Transform transform;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      transform.linear[column][row] = float(matrix.data()[4 * row + column]);
-    transform.translation[row] = float(matrix.data()[4 * row + 3]);
-  }
+glm::dmat4 transformOf(const ArrayIn<double>& matrix) {
+  glm::dmat4 transform;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      transform[column][row] = matrix.data()[4 * row + column];
   return transform;
 }
 
@@ -55,10 +53,10 @@ int Geometry::addMesh(const ArrayIn<float>& positions,
 
 void Geometry::addInstance(int mesh, int material, const std::optional<ArrayIn<double>>& toWorld,
                            const std::string& name) {
-  std::optional<Transform> transform;
-  if (toWorld) transform = transformOf(*toWorld);
   SceneBuilder& b = builder();
-  b.addInstance(mesh, material, b.addNode(name), transform);
+  const int node = b.addNode(name);
+  toWorld ? b.addInstance(mesh, material, node, transformOf(*toWorld))
+          : b.addInstance(mesh, material, node);
 }
 
 void bindGeometry(nb::module_& m) {

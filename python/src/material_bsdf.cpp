@@ -65,7 +65,7 @@ class MaterialBsdf {
     mesh.uvs.push_back({{0, 0}, {1, 0}, {0, 1}});
     mesh.triangles = {{0, 1, 2}};
     builder.addInstance(builder.addMesh(std::move(mesh), material), material,
-                        builder.addNode("plane"), {});
+                        builder.addNode("plane"));
     return scene;
   }
   Bsdf bsdfFor(const vec3& wo) const {

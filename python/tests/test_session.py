@@ -12,7 +12,7 @@ import weakref
 
 import numpy as np
 import pytest
-from conftest import sky, square_scene
+from conftest import SQUARE, TWO, sky, square_scene
 
 import chromeball as cb
 
@@ -61,6 +61,46 @@ def test_update_redoes_what_differs(scene, camera, small):
         session.update(probe_rotatoin=3)
     session.update(probe_rotation=None, camera=camera)
     assert np.array_equal(session.start().wait().color, cb.render(scene, probe, camera, **small).color)
+
+
+def test_a_kept_scene_gives_the_bits_of_a_fresh_one(small):
+    placed = cb.Camera.look_at((1, 2, 2), (0, 0, 0))
+    probe = cb.Probe(sky())
+    kept = square_scene()
+    for camera, settings in ((None, {}), (None, {"size": (16, 48)}), (None, {"orbit": 30}), (placed, {"fov": 40}),
+                             (None, {"fov": 40}), (placed, {}), (placed, {"orbit": 30}), (None, {"crop": "2,2,5,5"})):
+        settings = {**small, **settings}
+        expected = cb.render(square_scene(), probe, camera, **settings).color
+        assert np.array_equal(cb.render(kept, probe, camera, **settings).color, expected), settings
+
+
+def test_files_that_were_written_are_read_again(tmp_path, camera, small):
+    file = tmp_path / "probe.pfm"
+
+    def write(radiance, second):
+        file.write_bytes(b"PF\n16 8\n-1\n" + np.full(8 * 16 * 3, radiance, "<f4").tobytes())
+        os.utime(file, (second, second))
+
+    write(1, second=1)
+    kept = cb.Scene(probe={"file": str(file)})
+    kept.add_mesh(SQUARE, TWO)
+    first = cb.render(kept, None, camera, **small).color
+    assert np.array_equal(cb.render(kept, None, camera, **small).color, first)
+    write(3, second=2)
+    assert np.allclose(cb.render(kept, None, camera, **small).color, 3 * first, rtol=1e-4)
+
+
+def test_meshes_far_from_the_origin_by_their_transforms(small):
+    def picture(x):
+        scene = cb.Scene()
+        for size, height in ((1, 0), (0.3, 0.4)):
+            place = np.diag([size, size, size, 1.0])
+            place[:3, 3] = (x, height, -x)
+            scene.add_mesh(SQUARE, TWO, transform=place)
+        return cb.render(scene, cb.Probe(sky()), cb.Camera.look_at((x, 2, 2 - x), (x, 0, -x), fov=40), **small).color
+
+    near = picture(0)
+    assert np.abs(picture(1e6 + 0.3) - near).mean() < 1e-3 * near.mean()
 
 
 def test_snapshots_and_cancel(scene, camera, small):

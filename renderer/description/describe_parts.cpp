@@ -38,6 +38,8 @@ PartJson partOf(const ModelEntry& model) {
   for (int column = 0; column < 3; ++column)
     part["linear"].push_back(numbersIn(model.placement.linear[column]));
   if (choice.variant) part["variant"] = choice.variant->name;
+  if (const glm::dvec3& rest = model.translationRest; rest != glm::dvec3(0))
+    part["rest"] = numbersIn(rest);
   return part;
 }
 

@@ -84,7 +84,7 @@ uint64_t hashOf(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) hashMesh(mesh, h);
   for (const Instance& i : scene.instances) {
     const Transform toWorld = i.toWorld.value_or(Transform());
-    h(i.mesh, i.material, i.node, toWorld.linear, toWorld.translation);
+    h(i.mesh, i.material, i.node, toWorld.linear, toWorld.translation, i.translationRest);
   }
   for (const Material& material : scene.materials) hashMaterial(material, h);
   for (const auto& grid : scene.grids)

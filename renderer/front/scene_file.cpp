@@ -12,6 +12,7 @@
 #include "front/scene_file_sections.h"
 #include "front/scene_values.h"
 #include "front/toml_section.h"
+#include "scene/float_rest.h"
 
 namespace chromeball {
 namespace {
@@ -50,7 +51,7 @@ ModelEntry readModel(const Entry& entry, const std::string& name, Origins& origi
   }
   if (const Entry e = model["translation"]) {
     placement.translation = e.vector();
-    result.translationRest = e.point() - glm::dvec3(placement.translation);
+    result.translationRest = floatRest(e.point());
   }
   const Entry animation = model["animation"], time = model["time"];
   if (animation || time) {

@@ -79,6 +79,7 @@ struct ViewAngles {
   double azimuth = 0, elevation = 0, roll = 0;
 
   void orient(Camera& camera) const;  // at its position
+  bool operator==(const ViewAngles&) const = default;
 };
 
 // The beam around a camera ray. Its cross-section after `distance` metres is

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose_view.h"
 
+#include <algorithm>
+
 #include "scene/placed_triangles.h"
 
 namespace chromeball {
@@ -88,6 +90,16 @@ ChosenView chooseView(const Scene& scene, const std::vector<int>& instances) {
   else
     view.isDark = hidesBacks;
   return view;
+}
+
+bool areShutIn(const Scene& scene, const std::vector<int>& instances, std::vector<int> all) {
+  std::erase_if(all, [&](int i) { return std::ranges::binary_search(instances, i); });
+  const Bounds around = bounds(scene, all), box = bounds(scene, instances);
+  if (around.empty() || box.empty()) return false;
+  if (!(glm::min(around.size().x, glm::min(around.size().y, around.size().z)) > 0)) return false;
+  const dvec3 middle = 0.5 * (dvec3(box.min) + dvec3(box.max));
+  return !seesOut(sightsFrom(scene, all, middle)) &&
+         facesOf(outsideViews(scene, all, around)).hideBacks();
 }
 
 }  // namespace chromeball

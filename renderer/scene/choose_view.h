@@ -29,6 +29,10 @@ struct ChosenView {
 // O(triangles).
 ChosenView chooseView(const Scene& scene, const std::vector<int>& instances);
 
+// Whether walls among `all` instances, single-sided and facing inwards, keep a probe's light from
+// the middle of some of them; both ascend. O(triangles).
+bool areShutIn(const Scene& scene, const std::vector<int>& instances, std::vector<int> all);
+
 // A camera inside the room that the instances form; nullopt if they do not form a room. They do if
 // front faces of walls surround some free position on all sides except for a window or a door,
 // floor and furniture are below it, none of the four sides of the model is open, and one of these

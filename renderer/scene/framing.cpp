@@ -71,7 +71,7 @@ Framing::Framing(const Scene& scene, float aspectRatio, const ViewWishes& wishes
   const Bounds box = bounds(scene, framed);
   if (!box.empty()) centre_ = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
   const ChosenView chosen = chooseView(scene, framed);
-  isDark_ = chosen.isDark;
+  isDark_ = chosen.isDark || (wishes.node && areShutIn(scene, framed, withoutGrounds(scene)));
   isInside_ = chosen.inside && !wishes.angles && !wishes.node && !wishes.turns;
   if (isInside_)
     view_ = *chosen.inside;

@@ -15,6 +15,8 @@ struct ViewWishes {
   std::optional<double> fov;        // vertical, radians
   std::optional<std::string> node;  // to be framed, with its descendants, in place of all
   bool turns = false;               // around the centre
+
+  bool operator==(const ViewWishes&) const = default;
 };
 
 // A camera that frames a scene from outside, as close as possible with all vertices in view and a

@@ -105,4 +105,24 @@ void append(Scene& scene, Scene&& other) {
   scene.moves |= other.moves;
 }
 
+// The scene is one of a builder, where nothing moves while the shutter is open.
+void moveOrigin(Scene& scene, const glm::dvec3& origin) {
+  if (origin == glm::dvec3(0)) return;
+  const auto moved = [&](const vec3& p) { return vec3(glm::dvec3(p) - origin); };
+  std::vector<int> users(scene.meshes.size());
+  for (const Instance& instance : scene.instances) ++users[size_t(instance.mesh)];
+  for (Instance& instance : scene.instances) {
+    const bool sharesMesh = users[size_t(instance.mesh)] > 1;
+    if (instance.toWorld || sharesMesh) {
+      Transform& t = instance.toWorld ? *instance.toWorld : instance.toWorld.emplace();
+      t.translation = vec3(glm::dvec3(t.translation) + instance.translationRest - origin);
+      instance.translationRest = glm::dvec3(0);
+    } else {
+      for (vec3& p : scene.meshes.edit(size_t(instance.mesh)).positions) p = moved(p);
+    }
+  }
+  for (Camera& camera : scene.cameras) camera.position = moved(camera.position);
+  for (PunctualLight& light : scene.lights) light.position = moved(light.position);
+}
+
 }  // namespace chromeball

@@ -24,6 +24,7 @@ struct Instance {
   int material = 0;
   int node = 0;  // index into Scene::nodeNames
   std::optional<Transform> toWorld;
+  glm::dvec3 translationRest{0};  // that float rounds off of toWorld's, until moveOrigin()
   bool moves = false;  // at other times of the animation it may have another place or shape
   // Its motion while the shutter is open, from this place and shape; null: it stands still.
   std::shared_ptr<const InstanceMotion> motion = nullptr;
@@ -73,5 +74,8 @@ struct Scene {
 
 // Adds the contents of `other` to `scene` (a scene file may have several models).
 void append(Scene& scene, Scene&& other);
+
+// Makes a point of the scene's coordinates their origin, in double precision.
+void moveOrigin(Scene& scene, const glm::dvec3& origin);
 
 }  // namespace chromeball

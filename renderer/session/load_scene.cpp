@@ -84,11 +84,13 @@ void replaceFiles(const std::vector<std::string>& earlier, const std::vector<std
   files.insert(at, probe.begin(), probe.end());
 }
 
-// The probe, if it has turned or is another one. An exception leaves everything unchanged.
-void replaceProbe(const RenderDescription& description, LoadedScene& loaded, FrameChange& change) {
+// The probe, if it has turned, is another one or shall be read again. An exception leaves
+// everything unchanged.
+void replaceProbe(const RenderDescription& description, bool readsAgain, LoadedScene& loaded,
+                  FrameChange& change) {
   const ProbeDescription earlier = loaded.description.probe;
   const ProbeDescription& probe = description.probe;
-  const bool isOther = probe.file != earlier.file || probe.map != earlier.map ||
+  const bool isOther = readsAgain || probe.file != earlier.file || probe.map != earlier.map ||
                        probe.mapping != earlier.mapping || probe.scale != earlier.scale;
   if (!isOther && loaded.probe.rotation() == probe.rotation) return;
   if (isOther) {
@@ -116,7 +118,8 @@ void replaceModels(RenderDescription& description, LoadedScene& loaded, ModelCac
   loaded.hasModelLights = models.hasLights;
   loaded.moves = models.moves;
   loaded.modelWarnings = std::move(models.warnings);
-  if (!description.probe.file && !models.scene.environment) checkLit(description, models.scene);
+  if (!description.probe.file && !description.probe.map && !models.scene.environment)
+    checkLit(description, models.scene);
   shareMeshes(loaded.scene, models.scene);
   change.geometry = models.origin != loaded.origin || !isSameWorld(models.scene, loaded.scene);
   if (change.geometry) loaded.scene = std::move(models.scene);
@@ -185,17 +188,18 @@ LoadedScene loadScene(const RenderDescription& given, ModelCache* shared,
   return result;
 }
 
-FrameChange loadFrame(const RenderDescription& given, LoadedScene& loaded, ModelCache& cache) {
+FrameChange loadFrame(const RenderDescription& given, LoadedScene& loaded, ModelCache& cache,
+                      bool readsProbe) {
   assert(!given.composite);
   RenderDescription description = given;
   FrameChange change;
   if (loaded.scene.isAnimated ||
       description.stand.turntable != loaded.description.stand.turntable) {
-    replaceProbe(description, loaded, change);
+    replaceProbe(description, readsProbe, loaded, change);
     replaceModels(description, loaded, cache, change);
   } else {
     const Camera camera = placeCamera(description, loaded.scene, loaded.view, loaded.origin);
-    replaceProbe(description, loaded, change);
+    replaceProbe(description, readsProbe, loaded, change);
     loaded.camera = camera;
     if (description.choosesSides) description.singleSided = loaded.description.singleSided;
   }

@@ -52,10 +52,11 @@ struct FrameChange {
   bool probe = false;     // another one, not only a turned one
 };
 
-// Replaces the camera, the probe if it has turned or is another file, and whatever an animated
-// model moves, for another frame of the same description. Not for composites; a probe that turns
-// must have a file.
-FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded, ModelCache& cache);
+// Replaces the camera, the probe if it has turned, is another file or shall be read again, and
+// whatever an animated model moves, for another frame of the same description; models that stand
+// still must have its view. Not for composites; a probe that turns must have a file.
+FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded, ModelCache& cache,
+                      bool readsProbe = false);
 
 // Messages to the user about the files of a description.
 

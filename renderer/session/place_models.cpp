@@ -41,6 +41,8 @@ Camera chooseWithoutLens(const RenderDescription& description, const Scene& scen
                *wanted, names.empty() ? "it has none" : didYouMean(*wanted, names));
   }
   if (!scene.cameras.empty() && !description.camera.frames()) return scene.cameras.front();
+  if (!view.camera)
+    throwInput("{}: its camera vanishes while the shutter is open", description.sceneName());
   return *view.camera;
 }
 
@@ -134,16 +136,24 @@ PlacedModels modelsAtOrigin(const RenderDescription& description,
   placed.scene = loadModels(description, models, placed.origin, cache, placed.warnings);
   const Bounds box = bounds(placed.scene);
   checkReach(box, description.sceneName());
-  if (description.scene) return placed;
   placed.origin = originFor(box);
   if (placed.origin != glm::dvec3(0))
     placed.scene = loadModels(description, models, placed.origin, cache, placed.warnings);
   return placed;
 }
 
-bool needsFraming(const RenderDescription& description, const Scene& scene) {
-  const CameraDescription& camera = description.camera;
-  return !camera.placed && !camera.name && (scene.cameras.empty() || camera.frames());
+// The description's size must be final.
+ViewNeeds viewNeeds(const RenderDescription& description, const Scene& scene) {
+  const CameraDescription& c = description.camera;
+  const RenderSettings& s = description.settings;
+  ViewNeeds needs{
+      .turns = c.turns, .stands = needsStand(description), .floor = floorOf(description)};
+  if (c.placed || c.name || (!scene.cameras.empty() && !c.frames())) return needs;
+  const auto fov = c.fov ? std::optional(glm::radians(*c.fov)) : std::nullopt;
+  needs.wishes = {c.view, fov, c.node, c.turns || description.stand.turntable};
+  needs.aspectRatio = float(s.width) / float(s.height);
+  needs.choosesSides = description.choosesSides;
+  return needs;
 }
 
 void checkNode(const RenderDescription& description, const Scene& scene) {
@@ -157,29 +167,23 @@ void checkNode(const RenderDescription& description, const Scene& scene) {
 }
 
 // The view of all times, begun with that of time 0 in the coordinates of that time: with the same
-// rounding for all times. The description's size must be final.
-AutomaticView findView(const RenderDescription& description, const PlacedModels& now,
-                       ModelCache& cache) {
+// rounding for all times.
+AutomaticView findView(const RenderDescription& description, const ViewNeeds& needs,
+                       const PlacedModels& now, ModelCache& cache) {
   constexpr size_t kMostTimes = 24;
-  const bool frames = needsFraming(description, now.scene);
-  if (!frames && !description.camera.turns && !needsStand(description))
-    return {.origin = now.origin};
+  if (!needs.wishes && !needs.turns && !needs.stands) return {.needs = needs, .origin = now.origin};
   std::optional<PlacedModels> start;
   if (now.scene.isAnimated)
     start = modelsAtOrigin(description, modelsAt(description.models, 0), cache);
   const PlacedModels& first = start ? *start : now;
-  AutomaticView view{.origin = first.origin};
+  AutomaticView view{.needs = needs, .origin = first.origin};
   view.centre = centreOf(first.scene);
   view.axis = glm::dvec3(view.centre) + view.origin;
   double lowest = bounds(first.scene).min.y;
   std::optional<Framing> framing;
-  if (frames) {
+  if (needs.wishes) {
     checkNode(description, first.scene);
-    const RenderSettings& s = description.settings;
-    const CameraDescription& c = description.camera;
-    const auto fov = c.fov ? std::optional(glm::radians(*c.fov)) : std::nullopt;
-    framing.emplace(first.scene, float(s.width) / float(s.height),
-                    ViewWishes{c.view, fov, c.node, c.turns || description.stand.turntable});
+    framing.emplace(first.scene, needs.aspectRatio, *needs.wishes);
   }
   std::vector<double> times;
   if (start) times = timesOfChange(modelsAt(description.models, 0), INFINITY, kMostTimes, cache);
@@ -192,10 +196,10 @@ AutomaticView findView(const RenderDescription& description, const PlacedModels&
   }
   if (std::isfinite(lowest)) view.lowest = lowest + view.origin.y;
   if (framing) view.camera = framing->camera(), view.isDark = framing->isDark();
-  const float drop = float(dropOf(description, view.lowest));
+  const float drop = needs.floor ? float(*needs.floor - view.lowest) : 0;
   view.centre.y += drop;
   if (view.camera) view.camera->position.y += drop;
-  if (!description.camera.turns) view.centre = vec3(0);
+  if (!needs.turns) view.centre = vec3(0);
   return view;
 }
 
@@ -204,7 +208,7 @@ AutomaticView findView(const RenderDescription& description, const PlacedModels&
 void chooseSides(RenderDescription& description, const AutomaticView& view, const Scene& scene) {
   const auto emits = [&](const Instance& i) { return scene.materials[size_t(i.material)].emits(); };
   const bool isLit = !scene.lights.empty() || std::ranges::any_of(scene.instances, emits);
-  if (view.isDark && !isLit && description.run.makesImage)
+  if (view.needs.choosesSides && view.isDark && !isLit && description.run.makesImage)
     description.singleSided = SingleSided::Light;
 }
 
@@ -222,7 +226,10 @@ AutomaticView AutomaticView::seenFrom(const glm::dvec3& other) const {
 Scene loadModels(const RenderDescription& description, const std::vector<ModelEntry>& models,
                  const glm::dvec3& origin, ModelCache& cache, std::vector<std::string>& warnings) {
   Scene scene;
-  if (description.scene) scene = *description.scene;
+  if (description.scene) {
+    scene = *description.scene;
+    moveOrigin(scene, origin);
+  }
   std::set<std::string> known(warnings.begin(), warnings.end());
   const auto add = [&](const std::string& line) {
     if (known.insert(line).second) warnings.push_back(line);
@@ -265,7 +272,8 @@ PlacedModels placeModels(RenderDescription& description, ModelCache& cache,
     throwInput("{}: the model has no triangles to render", description.sceneName());
   Scene& scene = placed.scene;
   chooseSize(description, scene);
-  placed.view = view ? *view : findView(description, placed, cache);
+  const ViewNeeds needs = viewNeeds(description, scene);
+  placed.view = view && view->needs == needs ? *view : findView(description, needs, placed, cache);
   if (description.stand.movesModels()) {
     const AutomaticView found = placed.view;
     placed = modelsAtOrigin(description, standing(description, description.models, found), cache);
@@ -279,11 +287,15 @@ PlacedModels placeModels(RenderDescription& description, ModelCache& cache,
   if (description.lighting.lamps == 0) scene.lights.clear();
   for (const Lamp& lamp : description.lamps) addLamp(scene, lamp, placed.origin);
   removeLamps(description, scene);
-  if (description.choosesSides && description.singleSided == SingleSided::Camera)
-    chooseSides(description, placed.view, scene);
+  if (description.singleSided == SingleSided::Camera) chooseSides(description, placed.view, scene);
   for (Material& material : scene.materials) material.singleSided = description.singleSided;
   if (description.straightGlassShadows) passShadowsStraight(scene.materials);
   return placed;
+}
+
+bool isViewOf(RenderDescription description, const Scene& scene, const AutomaticView& view) {
+  chooseSize(description, scene);
+  return viewNeeds(description, scene) == view.needs;
 }
 
 Camera placeCamera(RenderDescription& description, const Scene& scene, const AutomaticView& view,

@@ -7,13 +7,27 @@
 #include <vector>
 
 #include "description/render_description.h"
+#include "scene/framing.h"
 #include "scene/scene.h"
 
 namespace chromeball {
 
+// Everything that decides an AutomaticView besides the models; what is not needed is as in {}.
+struct ViewNeeds {
+  std::optional<ViewWishes> wishes;  // of the camera, if nobody has placed one
+  float aspectRatio = 0;             // of its image
+  bool choosesSides = false;         // by that camera
+  bool turns = false;                // the camera, around the centre
+  bool stands = false;               // needsStand()
+  std::optional<double> floor;       // floorOf()
+
+  bool operator==(const ViewNeeds&) const = default;
+};
+
 // The parts of a view that depend on the models' bounds, at all times of an animation, so that they
 // are the same for each of its frames.
 struct AutomaticView {
+  ViewNeeds needs;
   std::optional<Camera> camera;  // if nobody has placed one
   bool isDark = false;           // Framing::isDark, of that camera
   vec3 centre{0};                // of the camera's turn; 0 without one
@@ -41,11 +55,15 @@ struct PlacedModels {
 // Reads the models; chooses the camera, and the image's size if the description leaves it to the
 // camera. Converts what the scene file places in the world to the scene's coordinates. If the
 // shutter is open, includes the motion of models and camera. `view`: from other frames; null: to be
-// found. Throws InputError.
+// found; it is found anew if the description needs another one. Throws InputError.
 PlacedModels placeModels(RenderDescription& description, ModelCache& cache,
                          const AutomaticView* view = nullptr);
 
-// The same for models that stand still: only the camera is placed again.
+// Whether the view of these models is the description's.
+bool isViewOf(RenderDescription description, const Scene& scene, const AutomaticView& view);
+
+// The same for models that stand still, and a view of the description: only the camera is placed
+// again.
 Camera placeCamera(RenderDescription& description, const Scene& scene, const AutomaticView& view,
                    const glm::dvec3& origin);
 

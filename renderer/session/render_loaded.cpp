@@ -123,7 +123,8 @@ FinishedRender renderLoaded(const LoadedScene& loaded) {
 }
 
 void FrameScene::show(const RenderDescription& description) {
-  if (!loaded_ || description.composite) return load(description);
+  if (!loaded_ || description.composite || !isViewOf(description, loaded_->scene, loaded_->view))
+    return load(description);
   const FrameChange change = loadFrame(description, *loaded_, models_);
   if (change.geometry) {
     BsdfTables tables = prepared_.world->bsdfTables;

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/file_stamps.h"
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/progress.h"
@@ -80,6 +81,9 @@ class Session::Implementation : private WorkMonitor {
   void render();
   void prepare();
   void load();
+  bool isStale(const std::string& file) const { return !stamps_.isCurrent(file); }
+  bool hasStaleProbe() const;
+  bool hasStaleScene() const;
   void changeWhatDiffers();
   void unload();
 
@@ -90,6 +94,7 @@ class Session::Implementation : private WorkMonitor {
   PreparedScene prepared_;
   bool lightingIsStale_ = false;  // in prepared_: making it was cancelled or has failed
   ModelCache models_;
+  FileStamps stamps_;  // of all that loaded_, and those before that models_ knows, were read from
   Work work_;
   PhaseSeconds seconds_;  // of the last start()
   std::unique_ptr<WatchedRender> control_;
@@ -217,9 +222,12 @@ void Session::Implementation::prepare() {
 
 void Session::Implementation::load() {
   work_ = {.loadedScene = true, .loadedProbe = true, .preparedLighting = true};
+  if (!stamps_.areCurrent()) models_ = {}, stamps_ = {};
+  const auto begin = FileStamps::now();
   ModelCache models = models_;
   LoadedScene scene = loadScene(description_, &models);
   models_ = std::move(models);
+  stamps_.add(scene.files, begin);
   try {
     const PreparedScene earlier = std::exchange(prepared_, {});
     if (loaded_) {
@@ -237,16 +245,30 @@ void Session::Implementation::load() {
   lightingIsStale_ = false;
 }
 
+bool Session::Implementation::hasStaleProbe() const {
+  return std::ranges::any_of(loaded_->loadedProbe.files, [&](const auto& f) { return isStale(f); });
+}
+
+bool Session::Implementation::hasStaleScene() const {
+  const std::vector<std::string>& ofProbe = loaded_->loadedProbe.files;
+  return std::ranges::any_of(loaded_->files, [&](const std::string& file) {
+    return std::ranges::find(ofProbe, file) == ofProbe.end() && isStale(file);
+  });
+}
+
 void Session::Implementation::changeWhatDiffers() {
   const Differences differences(*given_, description_);
   // The models' own environment is the scene's, and moves to the probe.
   const auto hasProbe = [](const RenderDescription& d) { return d.probe.file || d.probe.map; };
-  if (!differences.keepScene() ||
+  if (!differences.keepScene() || hasStaleScene() ||
+      !isViewOf(description_, loaded_->scene, loaded_->view) ||
       (differences.inProbe() && !(hasProbe(*given_) && hasProbe(description_))))
     return load();
+  const auto begin = FileStamps::now();
   FrameChange change;
   try {
-    change = loadFrame(description_, *loaded_, models_);
+    change = loadFrame(description_, *loaded_, models_, hasStaleProbe());
+    if (change.probe) stamps_.add(loaded_->loadedProbe.files, begin);
   } catch (...) {
     lightingIsStale_ = true;
     if (loaded_->scene.isAnimated) unload();  // else it is of one description
@@ -269,7 +291,7 @@ void Session::Implementation::changeWhatDiffers() {
 void Session::Implementation::unload() {
   prepared_ = {};
   loaded_.reset();
-  models_ = {};
+  models_ = {}, stamps_ = {};
 }
 
 std::shared_ptr<const SessionImage> Session::Implementation::snapshot() {

@@ -46,7 +46,8 @@ struct SessionCallbacks {
 
 // Loads and renders a description in a background thread, hands out the image so far without
 // stopping the render, and accepts further descriptions, for which it redoes only what differs from
-// the one before. After update() the picture has the same bits as a new session's.
+// the one before, or in its files by now. After update() the picture has the same bits as a new
+// session's.
 //
 // Its functions may be called from any thread, but by one thread at a time. The next wait() throws
 // errors of the background thread (InputError, RunError).

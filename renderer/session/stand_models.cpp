@@ -3,6 +3,7 @@
 
 #include "composite/local_scene.h"
 #include "scene/bounds.h"
+#include "scene/float_rest.h"
 
 namespace chromeball {
 namespace {
@@ -13,13 +14,6 @@ using GroundPlane = CompositeDescription::GroundPlane;
 
 bool hasNamedGround(const RenderDescription& description) {
   return description.composite && description.composite->ground == GroundPlane::IfNamed;
-}
-
-// Where the models' lowest point shall be.
-double floorOf(const RenderDescription& description) {
-  const auto& composite = description.composite;
-  if (composite && composite->ground == GroundPlane::Always) return composite->groundHeight;
-  return description.stand.height.value_or(0);
 }
 
 dmat3 turnOf(const RenderDescription& description) {
@@ -34,8 +28,16 @@ bool needsStand(const RenderDescription& description) {
   return stand.movesModels() || stand.hasGround || hasNamedGround(description);
 }
 
+std::optional<double> floorOf(const RenderDescription& description) {
+  if (!description.stand.drops) return {};
+  const auto& composite = description.composite;
+  if (composite && composite->ground == GroundPlane::Always) return composite->groundHeight;
+  return description.stand.height.value_or(0);
+}
+
 double dropOf(const RenderDescription& description, double lowest) {
-  return description.stand.drops ? floorOf(description) - lowest : 0;
+  const std::optional<double> floor = floorOf(description);
+  return floor ? *floor - lowest : 0;
 }
 
 std::vector<ModelEntry> standing(const RenderDescription& description,
@@ -48,7 +50,7 @@ std::vector<ModelEntry> standing(const RenderDescription& description,
     const dvec3 at = dvec3(placement.translation) + model.translationRest;
     const dvec3 moved = view.axis + turn * (at - view.axis) + drop;
     placement = {glm::mat3(turn * dmat3(placement.linear)), vec3(moved)};
-    model.translationRest = moved - dvec3(placement.translation);
+    model.translationRest = floatRest(moved);
   }
   return models;
 }

@@ -11,6 +11,9 @@ namespace chromeball {
 // Whether AutomaticView::lowest or its axis are needed.
 bool needsStand(const RenderDescription& description);
 
+// Where the models' lowest point shall be; nullopt: they are not dropped.
+std::optional<double> floorOf(const RenderDescription& description);
+
 // How far the models move up, metres, if their lowest point is at this height (y in the world).
 double dropOf(const RenderDescription& description, double lowest);
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "math/vec.h"
 #include "scene/builder/complete_mesh.h"
+#include "scene/float_rest.h"
 #include "scene/motion.h"
 #include "scene/texture.h"
 
@@ -212,7 +213,14 @@ void SceneBuilder::addInstance(int mesh, int material, int node,
     throwInput(
         "instance {} (\"{}\"): its transform is not invertible, or beyond the range of float",
         scene_.instances.size(), scene_.nodeNames[size_t(node)]);
-  scene_.instances.push_back({mesh, material, node, toWorld, moves});
+  scene_.instances.push_back(
+      {.mesh = mesh, .material = material, .node = node, .toWorld = toWorld, .moves = moves});
+}
+
+void SceneBuilder::addInstance(int mesh, int material, int node, const glm::dmat4& toWorld) {
+  const glm::dvec3 translation(toWorld[3]);
+  addInstance(mesh, material, node, Transform{glm::mat3(glm::dmat3(toWorld)), vec3(translation)});
+  scene_.instances.back().translationRest = floatRest(translation);
 }
 
 int SceneBuilder::addCamera(Camera camera) {

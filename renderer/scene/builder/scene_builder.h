@@ -53,6 +53,8 @@ class SceneBuilder {
   // instance.
   void addInstance(int mesh, int material, int node,
                    const std::optional<Transform>& toWorld = std::nullopt, bool moves = false);
+  // With an affine transform whose translation may be far from the origin.
+  void addInstance(int mesh, int material, int node, const glm::dmat4& toWorld);
 
   int addCamera(Camera camera);
   void addLight(const PunctualLight& light);
