@@ -152,8 +152,7 @@ constexpr std::string_view kBiased = "is biased; leave it out in a reference of 
 constexpr std::string_view kNotTwo = "not for a reference of two passes; leave one of the two out";
 
 constexpr std::array kConflicts = {
-    Conflict{kTwoPass, kNoPlate,
-             "is for composites with a plate; the scene file has no [composite] plate"},
+    Conflict{kTwoPass, kNoPlate, "is for composites with a plate, and there is none"},
     Conflict{kClamp, kTwoPass, kBiased},
     Conflict{kRegularize, kTwoPass, kBiased},
     Conflict{kDenoise, kTwoPass, kBiased},

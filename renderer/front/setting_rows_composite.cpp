@@ -20,12 +20,14 @@ std::vector<Setting> compositeRows() {
       {.key = "ground",
        .type = Flag,
        .help = "Adds the ground to the local scene: a level plane, as far as the camera sees it "
-               "and the objects matter."},
+               "and the objects matter, at `ground_height`. (`--shadow-catcher ground` takes the "
+               "model's "
+               "lowest point.)"},
       {.key = "ground_height",
        .type = Number,
        .unit = "metres",
        .fallback = "0",
-       .help = "The ground's y coordinate."},
+       .help = "The ground's y coordinate: 0 also where the model does not stand on it."},
       {.key = "ground_reflectance",
        .type = Compound,
        .form = "a number (grey), or three",
