@@ -235,7 +235,7 @@ TEST_F(SlowCommandMessage, WarnsAboutASquareProbeReadAsLatLong) {
       messages({8, 8}, "lat-long").find("warning: " + (folder_ / "probe.exr") + ": is square"),
       std::string::npos);
   EXPECT_EQ(messages({8, 8}, "angular").find("is square"), std::string::npos);
-  EXPECT_EQ(messages({8, 4}, "lat-long"), "");
+  EXPECT_EQ(messages({8, 4}, "lat-long").find("warning"), std::string::npos);
 }
 
 TEST_F(SlowCommandMessage, WarnsAboutAnAngleThatLooksLikeRadians) {

@@ -19,10 +19,10 @@ std::vector<Setting> compositeRows() {
                "other nodes of the model are synthetic objects."},
       {.key = "ground",
        .type = Flag,
-       .help = "Adds the ground to the local scene: a level plane, as far as the camera sees it "
-               "and the objects matter, at `ground_height`. (`--shadow-catcher ground` takes the "
-               "model's "
-               "lowest point.)"},
+       .help = "Adds the ground to the local scene: a level plane at `ground_height`, as far as "
+               "the camera sees it "
+               "and the objects matter; for `--shadow-catcher ground` it is at the model's lowest "
+               "point."},
       {.key = "ground_height",
        .type = Number,
        .unit = "metres",
