@@ -20,9 +20,8 @@ std::vector<Setting> compositeRows() {
       {.key = "ground",
        .type = Flag,
        .help = "Adds the ground to the local scene: a level plane at `ground_height`, as far as "
-               "the camera sees it "
-               "and the objects matter; for `--shadow-catcher ground` it is at the model's lowest "
-               "point."},
+               "the camera sees it and the objects matter; for `--shadow-catcher ground` it is at "
+               "the model's lowest point."},
       {.key = "ground_height",
        .type = Number,
        .unit = "metres",
