@@ -194,9 +194,8 @@ TEST_F(CommandComposite, WarnsOfALocalSceneWithoutSurfaces) {
 }
 
 TEST_F(SlowCommandComposite, RejectsInvalidInput) {
-  expectInputError(
-      scene("plate = \"plate.exr\"\nlocal_scene = [\"grund\"]"),
-      "scene.toml:11: local_scene: the model has no node `grund`; did you mean `ground`?");
+  expectInputError(scene("plate = \"plate.exr\"\nlocal_scene = [\"grund\"]"),
+                   "scene.toml:11: the model has no node `grund`; did you mean `ground`?");
   expectInputError(scene("plate = \"none.exr\"\nlocal_scene = \"ground\""), "no such file");
   expectInputError(scene("plate = \"plate.exr\""), "[composite] has no `local_scene`");
   expectInputError(scene("local_scene = \"ground\""), "[composite] has no `plate`");
@@ -259,7 +258,13 @@ TEST_F(SlowCommandComposite, EstimatesReflectanceFromThePlate) {
   expectError({"render", scene(kGood), "-o", path("x.exr"), "--transparent"},
               "--transparent: is for plain renders; the layer alpha of a composite");
   expectError({"render", scene(kGood), "-o", path("x.exr"), "--aov", "reflectance"},
-              "layer `reflectance` needs reflectance =");
+              "--aov: layer `reflectance` needs reflectance =");
+  expectError({"render", path("model.gltf"), "--probe", path("probe.hdr"), "-o", path("x.exr"),
+               "--shadow-catcher", "ground", "--aov", "reflectance"},
+              "--aov: a shadow catcher has no plate");
+  expectError({"render", path("model.gltf"), "--probe", path("probe.hdr"), "-o", path("x.exr"),
+               "--shadow-catcher", "grund"},
+              "--shadow-catcher: the model has no node `grund`");
 }
 
 TEST_F(SlowCommandComposite, SurroundingsMustContainTheModel) {

@@ -132,9 +132,7 @@ TEST_F(SlowCommandDenoise, CtrlCDenoisesWhatThereIs) {
                                  stats, "--progress"}),
                     " samples");  // a pass is done
   EXPECT_EQ(result.status, 130);
-  EXPECT_TRUE(
-      result.error.ends_with("chromeball: interrupted; the image so far is saved, "
-                             "denoised\n"))
+  EXPECT_TRUE(result.error.ends_with("samples per pixel, denoised, is saved as " + out + "\n"))
       << result.error;
   EXPECT_NE(layer(out, ""), layer(out, "noisy"));
   EXPECT_EQ(layer(out, "denoise_error").size(), 48u * 32);
@@ -158,8 +156,7 @@ TEST_F(SlowCommandDenoise, ASecondCtrlCLeavesWithoutDenoising) {
         " samples", signal, {}, signal == SIGINT ? "Ctrl-C again leaves without" : "");
     EXPECT_EQ(result.status, 130);
     EXPECT_TRUE(
-        result.error.ends_with("chromeball: interrupted; the image so far is saved, not "
-                               "denoised\n"))
+        result.error.ends_with("samples per pixel, not denoised, is saved as " + out + "\n"))
         << result.error;
     const Metadata header = readExrMetadata(out);
     EXPECT_EQ(std::get<std::string>(header.at("interrupted")), "true");

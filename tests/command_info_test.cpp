@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #include "base/json.h"
 #include "base/json_text.h"
 #include "gltf_writer.h"
+#include "image/io/write_image.h"
 #include "json_file.h"
+#include "probe/synth.h"
 #include "run_command.h"
 #include "shared_data.h"
 
@@ -129,6 +132,13 @@ TEST(CommandInfo, OtherFilesAreRefused) {
   const TemporaryFolder folder;
   std::ofstream(folder / "scene.toml") << "model = \"a.glb\"\n";
   expectError({"info", folder / "scene.toml"}, "scene.toml: is no glTF model");
+  EXPECT_EQ(runCommand({"info", folder / "scene.toml"}).error.find("probe"), std::string::npos);
+  writeImage(folder / "sky.exr", constantProbe({8, 4}, Rgb(1)));
+  expectError({"info", folder / "sky.exr"},
+              "is no glTF model (.gltf, .glb); see `chromeball probe info`");
+  std::filesystem::create_directory(folder / "cube");
+  writeImage(folder / "cube/px.exr", constantProbe({8, 8}, Rgb(1)));
+  expectError({"info", folder / "cube"}, "see `chromeball probe info`");
   expectError({"info", folder / "missing.glb"}, "missing.glb: no such file");
 }
 

@@ -470,7 +470,10 @@ TEST(SlowCommandRender, AnInterruptSavesTheImageSoFar) {
                      scene.out / "a.exr", "--stats", scene.out / "a.json", "--aov", "albedo"},
                     "  2%");  // after a second
   EXPECT_EQ(result.status, 130);
-  EXPECT_TRUE(result.error.ends_with("chromeball: interrupted; the image so far is saved\n"));
+  EXPECT_NE(result.error.find("chromeball: interrupted; the image so far, of "), std::string::npos);
+  EXPECT_TRUE(
+      result.error.ends_with(" samples per pixel, is saved as " + (scene.out / "a.exr") + "\n"))
+      << result.error;
   EXPECT_EQ(scene.out.files(), (Words{"a.exr", "a.json"}));
   EXPECT_EQ(scene.stats("a.json")["interrupted"], true);
   const ImageFile image = scene.image("a.exr");

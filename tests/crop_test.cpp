@@ -117,7 +117,10 @@ TEST(CommandProbeCrop, RefusesWhatIsNoView) {
   };
   for (const char* fov : {"0", "180", "-20", "nan"}) expectError(with("--fov", fov), "--fov");
   expectError(with("--size", "0x5"), "--size");
-  expectError(with("--yaw", "inf"), "finite");
+  for (const char* angle : {"--yaw", "--pitch", "--roll"})
+    for (const char* degrees : {"1e300", "-1e300", "inf", "nan"})
+      expectError(with(angle, degrees), angle);
+  EXPECT_EQ(runCommand(with("--yaw", "-36000")).status, 0);
   expectError({"probe", "crop", folder / "probe.exr", folder / "probe.exr"}, "probe.exr");
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <random>
 
 #include "base/error.h"
 #include "front/plan_render.h"
@@ -31,15 +32,16 @@ Image cubeMap(Mapping mapping) {
   return convert(sky, Mapping::LatLong, mapping, {layout.columns * kSide, layout.rows * kSide});
 }
 
-Image face(const Image& map, int column, int row) {
-  return colorImage(kSide, kSide,
-                    [&](int x, int y) { return map.rgb(column * kSide + x, row * kSide + y); });
+Image face(const Image& map, int column, int row, int side = kSide) {
+  return colorImage(side, side,
+                    [&](int x, int y) { return map.rgb(column * side + x, row * side + y); });
 }
 
 // Writes the faces of a horizontal strip under these names.
 void writeFaces(const TemporaryFolder& folder, const Image& strip,
                 const std::vector<std::string>& names) {
-  for (size_t i = 0; i < names.size(); ++i) writeImage(folder / names[i], face(strip, int(i), 0));
+  for (size_t i = 0; i < names.size(); ++i)
+    writeImage(folder / names[i], face(strip, int(i), 0, strip.height));
 }
 
 void writeCube(const TemporaryFolder& folder) {
@@ -108,6 +110,48 @@ TEST(CubeFaces, FacesOfOneColourAreSeenAlongOpenGlsAxes) {
     EXPECT_NEAR(probe.radiance(axis).x, ++brightness, 0.02f) << name;
 }
 
+// Multiplies each texel by a number around 1.
+void addNoise(Image& image, float amplitude, uint32_t seed) {
+  std::mt19937 random(seed);
+  for (float& value : image.texels)
+    value *= 1 + amplitude * (2 * float(random()) / float(random.max()) - 1);
+}
+
+std::string orientationNote(const Image& strip, const std::vector<std::string>& names) {
+  const TemporaryFolder folder;
+  writeFaces(folder, strip, names);
+  return loadProbe(folderOf(folder)).messages.at(0).text;
+}
+
+const std::vector<std::string> kOpenExr = {"px.pfm", "nx.pfm", "py.pfm",
+                                           "ny.pfm", "pz.pfm", "nz.pfm"},
+                               kOpenGl = {"px.pfm", "nx.pfm", "py.pfm",
+                                          "ny.pfm", "nz.pfm", "pz.pfm"};
+
+// Faces of one colour, also of different ones, whose edges differ by noise alone.
+TEST(SlowCubeFaces, NoiseDoesNotDecide) {
+  for (uint32_t seed = 0; seed < 20; ++seed) {
+    Image strip = constantProbe({6 * kSide, kSide}, Rgb(0.002f));
+    for (int face = 0; seed % 2 && face < 6; ++face)
+      for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
+          strip.setRgb(face * kSide + x, y, Rgb(0.01f * float(face + 1)));
+    addNoise(strip, seed % 4 < 2 ? 0.02f : 0.5f, seed);
+    EXPECT_NE(orientationNote(strip, kOpenExr).find("the edges do not tell"), std::string::npos)
+        << seed;
+  }
+}
+
+TEST(SlowCubeFaces, NoiseHidesNoClearEdges) {
+  const Image clean = cubeMap(Mapping::HorizontalStrip);
+  for (uint32_t seed = 0; seed < 5; ++seed) {
+    Image strip = clean;
+    addNoise(strip, 0.05f, seed);
+    EXPECT_NE(orientationNote(strip, kOpenExr).find("fit as in OpenEXR"), std::string::npos);
+    EXPECT_NE(orientationNote(strip, kOpenGl).find("fit as in OpenGL"), std::string::npos);
+  }
+}
+
 TEST(CubeFaces, AFolderThatIsNoCubeMapIsRefused) {
   const TemporaryFolder folder;
   const auto refuses = [&](const std::string& reason) {
@@ -160,6 +204,20 @@ TEST(CubeFaces, AFolderIsAProbeOfScenes) {
   EXPECT_EQ(identity, renderIdentity(load()));
   writeImage(faces / "py.exr", constantProbe({kSide, kSide}, Rgb(9)));
   EXPECT_NE(identity, renderIdentity(load()));
+}
+
+// Real light tells its axes in either convention.
+TEST(SlowCubeFaces, RealEdgesTell) {
+  for (const char* name : {"polyhaven/venice_sunset_1k.hdr", "polyhaven/studio_small_05_1k.hdr",
+                           "polyhaven/hilly_terrain_01_1k.hdr", "openexr/StageEnvLatLong.exr"}) {
+    const auto file = sharedData(std::string("probes/") + name);
+    if (!file) GTEST_SKIP() << "../shared/data/probes is not there";
+    const Image strip =
+        convert(loadProbe(*file).latLong, Mapping::LatLong, Mapping::HorizontalStrip, {6 * 32, 32});
+    EXPECT_NE(orientationNote(strip, kOpenExr).find("fit as in OpenEXR"), std::string::npos)
+        << name;
+    EXPECT_NE(orientationNote(strip, kOpenGl).find("fit as in OpenGL"), std::string::npos) << name;
+  }
 }
 
 // The faces and the lat-long map are of one probe, in which three.js and the lat-long map's maker

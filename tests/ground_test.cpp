@@ -44,7 +44,7 @@ TEST(Ground, CamerasMustSeeIt) {
     return "";
   };
   EXPECT_EQ(reason(topCamera(10, 40), 12),
-            "scene.toml:3: the camera is 2 m below the ground; give `ground_height`");
+            "scene.toml:3: the camera is 2 m below the ground; give one of them another height");
   EXPECT_EQ(reason(Camera::lookAt({0, 1, 5}, {0, 9, 0}, {0, 1, 0}, 0.5f), 0),
             "scene.toml:3: the camera does not see the ground; it looks above the horizon");
 }

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "probe/convert.h"
 #include "probe/load.h"
+#include "probe/synth.h"
 
 namespace chromeball::mapping_test {
 namespace {
@@ -257,6 +259,20 @@ TEST(Mapping, IsDetected) {
   for (const auto& [w, h] : {std::pair{1, 1}, {3, 2}, {2, 3}, {100, 70}})
     EXPECT_EQ(detect(w, h, 1).mapping, Mapping::LatLong) << w << " x " << h;
   EXPECT_FALSE(detect(100, 70, 1).certain);
+}
+
+// The rim lights texels whose centres are outside the disc: in small maps, more than one in ten of
+// all outside.
+TEST(Mapping, AnAngularMapIsDetectedAtAnySize) {
+  const Image sky = gradientProbe({64, 32}, Rgb(1, 2, 3), {0.3, 0.5, -0.2});
+  for (const int size : {16, 17, 24, 32, 50, 64, 99, 100, 128, 257}) {
+    Image map = convert(sky, Mapping::LatLong, Mapping::AngularMap, {size, size});
+    EXPECT_EQ(detectMapping(map).mapping, Mapping::AngularMap) << size;
+    for (int y = 0; y < size / 8; ++y)  // two corners of a photograph of a ball
+      for (int x = 0; x < size / 8; ++x)
+        for (const int left : {x, size - 1 - x}) map.setRgb(left, y, Rgb(0.5f));
+    EXPECT_EQ(detectMapping(map).mapping, Mapping::MirrorBall) << size;
+  }
 }
 
 }  // namespace

@@ -159,6 +159,35 @@ TEST_F(SlowOutputFiles, OtherCommandsDoNotOverwriteTheirInputs) {
                             kInput);
 }
 
+// A folder that is a probe is read by its six files; another name in it is free.
+TEST_F(SlowOutputFiles, FacesOfACubeMapAreInputs) {
+  fs::create_directory(in("cube"));
+  for (const char* name : {"front", "back", "left", "right", "top", "bottom"})
+    writeImage(in("cube/" + std::string(name) + ".exr"), constantProbe({8, 8}, Rgb(1)));
+  fs::create_directory_symlink("cube", in("link"));
+  const std::string cube = in("cube"), front = in("cube/front.exr");
+  const std::string reason = "would overwrite the input " + front;
+  std::ofstream(in("sun.json")) << "{}";
+  for (const Words& words : {
+           Words{"probe", "convert", cube, front, "--to", "lat-long"},
+           Words{"probe", "convert", cube, in("link/front.exr"), "--to", "lat-long"},
+           Words{"probe", "edit", cube, front, "--scale", "2"},
+           Words{"probe", "irradiance", cube, front},
+           Words{"probe", "convolve", cube, front, "--kernel", "diffuse"},
+           Words{"probe", "crop", cube, front, "--size", "16x12"},
+           Words{"probe", "split", cube, "--suns", in("a.json"), "--rest", front},
+           Words{"probe", "add-sun", cube, front, "--lights", in("sun.json")},
+           Words{"probe", "align", cube, in("probe.exr"), "-o", front},
+           Words{"lights", cube, "--method", "median-cut", "--count", "4", "-o", in("a.json"),
+                 "--preview", front},
+           Words{"image", "relight", in("plate.exr"), "-o", front, "--probe", cube},
+       })
+    expectErrorWithoutChanges(words, reason);
+  const CommandResult result =
+      runCommand({"probe", "edit", cube, in("cube/brighter.exr"), "--scale", "2"});
+  EXPECT_EQ(result.status, 0) << result.error;
+}
+
 // The file at the end of the links is replaced, and they stay; anything that is no file is refused
 // first.
 TEST_F(SlowOutputFiles, LinksAreFollowedAndSpecialFilesRefused) {

@@ -50,7 +50,7 @@ ObjectMask findObjects(const Scene& scene, const std::vector<NamedSetting>& name
       if (scene.nodeNames[node] == local.name) isLocal[node] = known = true;
     if (!known) {
       const std::vector<std::string_view> all(scene.nodeNames.begin(), scene.nodeNames.end());
-      throwInput("{}: local_scene: the model has no node `{}`; {}", local.location, local.name,
+      throwInput("{}: the model has no node `{}`; {}", local.location, local.name,
                  didYouMean(local.name, all));
     }
   }
@@ -146,8 +146,8 @@ Ground groundAround(const Camera& camera, float aspectRatio, const Bounds& objec
                     const std::string& location) {
   constexpr float kReach = 30;
   if (!(camera.position.y > height))
-    throwInput("{}: the camera is {:.3g} m below the ground; give `ground_height`", location,
-               height - camera.position.y);
+    throwInput("{}: the camera is {:.3g} m below the ground; give one of them another height",
+               location, height - camera.position.y);
   if (!looksDown(camera, aspectRatio))
     throwInput("{}: the camera does not see the ground; it looks above the horizon", location);
   const vec3 centre = 0.5f * (objects.min + objects.max);

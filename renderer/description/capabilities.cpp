@@ -154,8 +154,7 @@ constexpr std::string_view kBiased = "is biased; leave it out in a reference of 
 constexpr std::string_view kNotTwo = "not for a reference of two passes; leave one of the two out";
 
 constexpr std::array kConflicts = {
-    Conflict{kTwoPass, kNoPlate,
-             "is for composites with a plate; the scene file has no [composite] plate"},
+    Conflict{kTwoPass, kNoPlate, "is for composites with a plate, and there is none"},
     Conflict{kClamp, kTwoPass, kBiased},
     Conflict{kRegularize, kTwoPass, kBiased},
     Conflict{kDenoise, kTwoPass, kBiased},
@@ -171,7 +170,7 @@ constexpr std::array kConflicts = {
     Conflict{kDenoiseLayers, kOneSample, "needs at least 2 samples per pixel"},
     Conflict{kLightLayers, kComposite,
              "composites have no layers by light (light_groups, shadow_mattes); render the scene "
-             "without [composite]"},
+             "without one"},
     Conflict{kDenoise, kLightLayers,
              "layers by light would not add up to the denoised picture; leave one of the two out"},
     Conflict{kAmbientOcclusion, kNotEnvironmentMap, "is for the integrator environment-map"},
@@ -181,7 +180,7 @@ constexpr std::array kConflicts = {
              "it"},
     Conflict{kUniformBent, kNoBentNormal, "is for the layer `bent_normal`"},
     Conflict{kApproximation, kComposite,
-             "knows only light of a distant probe; leave [composite] out"},
+             "knows only light of a distant probe; leave the composite out"},
     Conflict{kApproximation, kSurroundings,
              "knows only light of a distant probe; leave [surroundings] out"},
     Conflict{kApproximation, kSources, "knows only light of a distant probe; leave [[source]] out"},
@@ -195,7 +194,7 @@ constexpr std::array kConflicts = {
     Conflict{kApproximation, kDepthByKind, "follows no paths; leave the limits of depth out"},
     Conflict{kCacheFile, kNoCache, "needs an irradiance cache"},
     Conflict{kCache, kNotPath, "not with another integrator; leave one of the two out"},
-    Conflict{kCache, kComposite, "not with [composite]; leave one of the two out"},
+    Conflict{kCache, kComposite, "not with a composite; leave one of the two out"},
     Conflict{kCache, kShutter, "not with an open shutter; leave one of the two out"},
     Conflict{kCache, kLightLayers, "not with light groups; leave one of the two out"},
     Conflict{kCache, kRegularize, "not with regularisation; leave one of the two out"},

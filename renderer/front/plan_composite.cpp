@@ -34,6 +34,9 @@ void planShadowCatcher(const Settings& s, RenderDescription& description) {
   for (const char* key : {"reflectance", "iterations"})
     if (const std::string name = fmt::format("composite.{}", key); s.has(name))
       throwInput("{}: a shadow catcher has no plate that tells its reflectance", s.location(name));
+  if (std::ranges::count(composite.layers, "reflectance") > 0)
+    throwInput("{}: a shadow catcher has no plate that tells the layer `reflectance`",
+               s.location("output.aovs"));
   for (const char* layer : {"objects", "alpha", "difference", "ratio"})
     if (std::ranges::count(composite.layers, layer) == 0) composite.layers.emplace_back(layer);
 }
@@ -58,7 +61,7 @@ void planPlate(const Settings& s, RenderDescription& description) {
   if (std::ranges::count(composite.layers, "reflectance") > 0 &&
       composite.reflectance == Reflectance::Model)
     throwInput("{}: layer `reflectance` needs reflectance = \"plate\" or \"flat\" in [composite]",
-               description.origins.of("composite.entry"));
+               s.location("output.aovs"));
 }
 
 }  // namespace

@@ -35,8 +35,7 @@ std::vector<Aov> layersOf(const SceneFile& file) {
     if (!composite || composite->layer == CompositeLayer::Alpha)
       layers.push_back(aovFromName(name, location));
     else if (!file.composite)
-      throwInput("{}: layer `{}` is a composite's; the scene file has no [composite]", location,
-                 name);
+      throwInput("{}: layer `{}` is a composite's, and this is none", location, name);
   }
   return layers;
 }

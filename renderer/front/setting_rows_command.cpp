@@ -24,9 +24,10 @@ std::vector<Setting> commandRows() {
            .absent = "a plain render",
            .help = "Renders all other nodes, and the shadows and light that they cast on these, as "
                    "an image with alpha to be laid over a photograph, with the layers objects, "
-                   "alpha, difference and ratio of the .exr. `ground`: a level plane under the "
-                   "model, unless a node is called so; --ground may give its height. As "
-                   "[composite] with mode = \"shadow-catcher\"."},
+                   "alpha, difference and ratio of the .exr. `ground`: a level plane at the "
+                   "model's lowest point, unless a node is called so; --ground=HEIGHT puts it "
+                   "elsewhere. Else as [composite] with mode = \"shadow-catcher\", whose ground is "
+                   "at height 0."},
           {.option = "two-pass",
            .type = Flag,
            .help = "Renders a composite as the difference of two renders: slow, the reference for "

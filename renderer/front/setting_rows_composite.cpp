@@ -19,13 +19,14 @@ std::vector<Setting> compositeRows() {
                "other nodes of the model are synthetic objects."},
       {.key = "ground",
        .type = Flag,
-       .help = "Adds the ground to the local scene: a level plane, as far as the camera sees it "
-               "and the objects matter."},
+       .help = "Adds the ground to the local scene: a level plane at `ground_height`, as far as "
+               "the camera sees it and the objects matter; for `--shadow-catcher ground` it is at "
+               "the model's lowest point."},
       {.key = "ground_height",
        .type = Number,
        .unit = "metres",
        .fallback = "0",
-       .help = "The ground's y coordinate."},
+       .help = "The ground's y coordinate: 0 also where the model does not stand on it."},
       {.key = "ground_reflectance",
        .type = Compound,
        .form = "a number (grey), or three",

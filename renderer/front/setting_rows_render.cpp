@@ -230,7 +230,9 @@ std::vector<Setting> outputRows() {
        .fallback = "auto",
        .help =
            "Exposure of a .png: radiance times 2^STOPS. auto: chosen from the surfaces in view, "
-           "and printed; for a sequence, from its first frame; for a composite with a plate, 0.",
+           "and printed; for a sequence, from its first frame. A composite with a plate has 0, and "
+           "no "
+           "auto.",
        .effect = Effect::Display},
       {.key = "tonemap",
        .argument = "NAME",

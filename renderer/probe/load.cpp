@@ -126,6 +126,17 @@ LoadedProbe probeOf(ImageFile&& file, const std::filesystem::path& path, std::st
   return probe;
 }
 
+// Whether a texel is outside the mapping's valid area with all of its corners: a disc's rim lights
+// texels whose centres are outside.
+bool isOutside(const Image& image, Mapping mapping, int x, int y) {
+  constexpr double kLow = 0.01, kHigh = 1 - kLow;  // in the texel, also where faces border on it
+  for (const dvec2& corner :
+       {dvec2(kLow, kLow), dvec2(kHigh, kLow), dvec2(kLow, kHigh), dvec2(kHigh, kHigh)})
+    if (showsDirection(mapping, {(x + corner.x) / image.width, (y + corner.y) / image.height}))
+      return false;
+  return true;
+}
+
 // Whether the image is black outside the mapping's valid area: at least 9 in 10 texels there are
 // below 1/1000 of the mean inside. (Debevec's probes have a copyright notice there.)
 bool isBlackOutside(const Image& image, Mapping mapping) {
@@ -139,7 +150,7 @@ bool isBlackOutside(const Image& image, Mapping mapping) {
       if (showsDirection(mapping, {(x + 0.5) / image.width, (y + 0.5) / image.height})) {
         sumInside += brightness;
         ++countInside;
-      } else {
+      } else if (isOutside(image, mapping, x, y)) {
         outside.push_back(brightness);
       }
     }

@@ -90,8 +90,21 @@ std::string hintOn(const std::string& option, const CLI::App& command) {
   return fmt::format("did you mean `{}`?", all.at(nearest));
 }
 
-// Rewrites an error message of CLI11; for an unknown word, adds the nearest known one.
-std::string describe(const CLI::App& app, const CLI::ParseError& error) {
+// What to say about `--ground 0.5`, where the value of an option may be left out; empty if no such
+// option is among the words.
+std::string onValueWithoutEquals(const std::vector<std::string>& words) {
+  double number = 0;
+  for (const Setting& setting : settingTable())
+    for (size_t i = 1; !setting.bare.empty() && i < words.size(); ++i)
+      if (words[i - 1] == "--" + setting.option && toNumber(words[i], number))
+        return fmt::format("--{}: needs `=` before a value; did you mean `{}`?", setting.option,
+                           optionText(setting, words[i]));
+  return "";
+}
+
+// Rewrites an error message of CLI11 about these words; for an unknown one, adds the nearest known.
+std::string describe(const CLI::App& app, const CLI::ParseError& error,
+                     const std::vector<std::string>& words) {
   const std::vector<const CLI::App*> commands = namedCommands(app);
   const CLI::App& command = *commands.back();
   std::string help = "see `";
@@ -106,6 +119,7 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
       return message;
   if (unknown.empty()) return fmt::format("{}; {}", error.what(), help);
 
+  if (const std::string message = onValueWithoutEquals(words); !message.empty()) return message;
   const std::string& word = unknown.front();
   const auto owner = std::ranges::find_if(  // `prob info`: it is none of `info`
       commands, [](const CLI::App* named) { return !named->remaining(false).empty(); });
@@ -191,7 +205,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) return report(kBadInput, describe(app, error));
+    if (error.get_exit_code() != 0)
+      return report(kBadInput, describe(app, error, {argv, argv + argc}));
     app.exit(error);  // prints --help or --version
   }
   finishOutput();

@@ -44,8 +44,13 @@ DisplayTransform displayOf(const Settings& settings, const ImageFile& file,
                            ? *ofRender
                            : autoExposure(inDisplayWindow(*std::move(color), file.placement, path),
                                           coverageIn(file, path));
-  say("{}\n", chosenInWords(transform.exposure));
+  say("{}\n", ofRender ? exposureInWords(transform.exposure, "from the header")
+                       : chosenInWords(transform.exposure));
   return transform;
+}
+
+std::string exposureInWords(float exposure, std::string_view source) {
+  return fmt::format("exposure {:+} stops ({})", exposure, source);
 }
 
 std::optional<float> exposureIn(const Metadata& metadata) {

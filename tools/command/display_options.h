@@ -3,6 +3,9 @@
 // --white-balance, from the table of settings.
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "command.h"
 #include "front/settings.h"
 #include "image/io/read_image.h"
@@ -19,6 +22,9 @@ void addDisplayOptions(Command app, Settings& settings);
 // printed. 0 for a file of integers, which is as it was shown, unless it was asked for.
 DisplayTransform displayOf(const Settings& settings, const ImageFile& file,
                            const std::string& path);
+
+// "exposure -1.25 stops (from the parts)"
+std::string exposureInWords(float exposure, std::string_view source);
 
 // The exposure in the header of a render; nullopt: none.
 std::optional<float> exposureIn(const Metadata& metadata);

@@ -108,13 +108,17 @@ void printOutcome(const RenderDescription& description, const FinishedRender& re
                                   fmt::join(description.output.files, ", ")));
   const auto& checkpoint = description.run.checkpoint;
   if (render.interrupted)
-    throw Interrupted(fmt::format("interrupted; the image so far is saved{}{}",
-                                  result.denoised                ? ", denoised"
-                                  : description.settings.denoise ? ", not denoised"
-                                                                 : "",
-                                  checkpoint && std::filesystem::exists(*checkpoint)
-                                      ? fmt::format("; --resume goes on from {}", *checkpoint)
-                                      : ""));
+    throw Interrupted(
+        fmt::format("interrupted; the image so far, of {} samples per pixel{}, is saved "
+                    "as {}{}",
+                    render.samplesPerPixel(),
+                    result.denoised                ? ", denoised"
+                    : description.settings.denoise ? ", not denoised"
+                                                   : "",
+                    fmt::join(description.output.files, ", "),
+                    checkpoint && std::filesystem::exists(*checkpoint)
+                        ? fmt::format("; --resume goes on from {}", *checkpoint)
+                        : ""));
   say("{} samples per pixel{} in {:.2f} s, noise {}{}: {}\n", render.samplesPerPixel(),
       guidedInWords(render), result.seconds, noiseInWords(result),
       exposure ? ", " + chosenInWords(*exposure) : "",

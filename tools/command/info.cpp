@@ -8,6 +8,8 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "commands.h"
+#include "image/io/cube_files.h"
+#include "image/io/image_format.h"
 #include "info_json.h"
 #include "scene/gltf/model_info.h"
 #include "session/memory_estimate.h"
@@ -162,9 +164,15 @@ void print(const ModelInfo& info, const std::string& file, bool all) {
   for (const std::string& warning : info.warnings) printSubjectLine("warning", warning);
 }
 
+bool isProbe(const std::string& path) {
+  if (std::filesystem::is_directory(path)) return !cubeFilesIn(path).empty();
+  return std::filesystem::is_regular_file(path) && imageFormat(path) != ImageFormat::Unknown;
+}
+
 void run(const InfoArguments& a) {
   if (std::filesystem::exists(a.file) && !beginsAsGltf(a.file))
-    throwInput("{}: is no glTF model (.gltf, .glb)", a.file);
+    throwInput("{}: is no glTF model (.gltf, .glb){}", a.file,
+               isProbe(a.file) ? "; see `chromeball probe info` for a light probe" : "");
   const ModelInfo info =
       modelInfo(a.file, a.allowsExternal ? ExternalFiles::Allow : ExternalFiles::Refuse);
   if (a.json)

@@ -20,7 +20,6 @@
 #include "parts/merge.h"
 #include "progress_bar.h"
 #include "session/image_header.h"
-#include "session/meter_exposure.h"
 #include "session/render_messages.h"
 #include "session/render_report.h"
 
@@ -65,7 +64,8 @@ void run(const MergeArguments& arguments) {
   finished.image.metadata.merge(wholeMetadata(parts));
   auto [transform, choosesExposure] = planDisplay(arguments.display);
   // The parts' exposure; of a composite they have none.
-  if (choosesExposure) transform.exposure = exposureIn(finished.image.metadata).value_or(0);
+  const std::optional<float> ofParts = exposureIn(finished.image.metadata);
+  if (choosesExposure) transform.exposure = ofParts.value_or(0);
   finished.image.metadata["exposure"] = transform.exposure;
   Messages messages;
   for (const std::string& output : arguments.outputs) {
@@ -78,7 +78,7 @@ void run(const MergeArguments& arguments) {
       arguments.outputs, [](const std::string& file) { return lowerExtension(file) == ".png"; });
   say("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samplesPerPixel(),
       parts.paths().size(), parts.paths().size() == 1 ? "" : "s", noiseInWords(finished),
-      shows && choosesExposure ? ", " + chosenInWords(transform.exposure) : "",
+      shows && choosesExposure && ofParts ? ", " + exposureInWords(*ofParts, "from the parts") : "",
       printable(fmt::format("{}", fmt::join(arguments.outputs, ", "))));
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chromeball probe crop PROBE OUT --fov DEG --yaw DEG --pitch DEG
+#include <cmath>
+
 #include "base/error.h"
 #include "commands.h"
 #include "front/arguments.h"
@@ -30,6 +32,12 @@ void run(const ProbeCropArguments& arguments) {
   checkDistinct({arguments.out}, {arguments.probe});
   if (!(arguments.fov > 0 && arguments.fov < 180))
     throwInput("--fov: {} should be above 0 and below 180 degrees", arguments.fov);
+  constexpr double kMostTurn = 36000;  // a hundred turns, as of --orbit
+  for (const auto& [option, angle] : {std::pair{"--yaw", arguments.pose.yaw},
+                                      {"--pitch", arguments.pose.pitch},
+                                      {"--roll", arguments.pose.roll}})
+    if (!(std::abs(angle) <= kMostTurn))
+      throwInput("{}: {} should be {} to {} degrees", option, angle, -kMostTurn, kMostTurn);
   const Rotation pose = Rotation::ofAngles(arguments.pose);
   const Image latLong = openProbe(arguments.probe, arguments.mapping, "--probe-mapping").latLong;
   const ImageSize size = checkedSize(arguments.out, sizeOf(arguments, latLong));

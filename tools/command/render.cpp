@@ -9,6 +9,7 @@
 #include "interrupt.h"
 #include "lighting/methods.h"
 #include "messages.h"
+#include "scene_notes.h"
 #include "scene_options.h"
 #include "session/develop_image.h"
 #include "session/meter_exposure.h"
@@ -49,6 +50,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
     print(viewers.messages());  // after the last error that input can cause
     print(outputMessages);
     print(loaded.messages);
+    print(sceneNotes(loaded));
     return render.run(prepared, [](double fraction) { return fraction; }, {interrupted, leaving});
   }();
   addState(loaded, part, result);

@@ -11,6 +11,7 @@
 #include "image_render.h"
 #include "interrupt.h"
 #include "messages.h"
+#include "scene_notes.h"
 #include "session/develop_image.h"
 #include "session/meter_exposure.h"
 #include "session/render_messages.h"
@@ -117,6 +118,7 @@ void renderFrames(const Sequence& sequence, const SceneOptions& options) {
       printNew(sequence.messages(), printed);
       printNew(outputMessages, printed);
       printNew(scene.loaded().messages, printed);
+      printNew(sceneNotes(scene.loaded()), printed);
       return render.run(
           scene.prepared(), [&](double fraction) { return (before + fraction) / count; },
           interrupted);

@@ -212,7 +212,11 @@ void addSettingOption(Command app, const Setting& setting, Settings& settings) {
 
 std::string optionText(const Setting& setting, const std::string& value) {
   const std::string argument = value.empty() ? std::string(setting.argument) : value;
-  return fmt::format("--{}{}{}", setting.option, argument.empty() ? "" : " ", argument);
+  return fmt::format("--{}{}{}", setting.option,
+                     argument.empty()       ? ""
+                     : setting.bare.empty() ? " "
+                                            : "=",
+                     argument);
 }
 
 void dropUnheeded(SceneFile& scene, SceneCommand command) {

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "image/io/cube_files.h"
 #include "image/io/write_image.h"
 
 namespace chromeball {
@@ -45,8 +46,10 @@ void checkOutputFile(const std::string& path, const std::vector<std::string_view
 void checkDistinct(const std::vector<std::string>& outputs,
                    const std::vector<std::string>& inputs) {
   std::map<std::string, std::string> read, written;  // names by key
-  for (const std::string& input : inputs)
+  for (const std::string& input : inputs) {
     if (!input.empty()) read.try_emplace(keyOf(input), input);
+    for (const fs::path& face : cubeFilesIn(input)) read.try_emplace(keyOf(face), face.string());
+  }
   for (const std::string& output : outputs) {
     const std::string key = output.empty() ? "" : keyOf(output);
     if (key.empty()) continue;

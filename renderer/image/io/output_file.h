@@ -12,8 +12,8 @@ namespace chromeball {
 // (base/file.h) does.
 void checkOutputFile(const std::string& path, const std::vector<std::string_view>& extensions);
 
-// Throws InputError if an output is the same file as an input or as another output, also through
-// links. Empty names are ignored.
+// Throws InputError if an output is the same file as an input, as a face of a cube map in a folder
+// that is an input, or as another output, also through links. Empty names are ignored.
 void checkDistinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
 // Checks an image that a scene file names, as checkWritable (image/io/write_image.h) does, but the
