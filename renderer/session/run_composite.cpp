@@ -151,7 +151,7 @@ Ground clipped(Ground ground, const Surroundings& around, const std::string& loc
   ground.max = glm::min(ground.max, max);
   const bool isInside = !isBox || (ground.height >= around.min.y && ground.height <= around.max.y);
   if (!isInside || !(ground.min.x < ground.max.x && ground.min.y < ground.max.y))
-    throwInput("{}: the ground is outside of [surroundings]; check `ground_height`", location);
+    throwInput("{}: the ground is outside of [surroundings]; check its height", location);
   return ground;
 }
 
@@ -172,8 +172,8 @@ void placeGround(const RenderDescription& description, LoadedScene& loaded) {
   const double depth = double(ground.height) - double(objects.min.y);
   if (depth > 1e-3 * glm::length(objects.size()))
     addWarning(loaded.messages,
-               "{}: the model reaches {:.3g} m below the ground; move it, or give `ground_height`, "
-               "here {:.3g}",
+               "{}: the model reaches {:.3g} m below the ground; move it, or give the ground a "
+               "height of {:.3g}",
                location, depth, composite.groundHeight - depth);
   addGround(loaded.scene, ground, composite.entry.groundReflectance.value_or(kTypicalGround));
 }
@@ -197,9 +197,10 @@ void prepareLocalScene(LoadedScene& loaded) {
   }
   loaded.isObject = findObjects(scene, localScene, location);
   if (!localScene.empty() && std::ranges::count(loaded.isObject, false) == 0)
-    addWarning(loaded.messages,
-               "{}: local_scene: `{}` has no visible surface, so that no object changes its light",
-               localScene.front().location, localScene.front().name);
+    addWarning(
+        loaded.messages,
+        "{}: `{}`, the local scene, has no visible surface, so that no object changes its light",
+        localScene.front().location, localScene.front().name);
   if (composite.choosesReflectance && hasLamps(scene))
     composite.reflectance = CompositeDescription::Reflectance::Plate;
   if (composite.reflectance == CompositeDescription::Reflectance::Flat) {
