@@ -10,7 +10,7 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "json_file.h"
-#include "lighting/export/light_list.h"
+#include "lighting/export/light_file.h"
 #include "probe/edit.h"
 #include "probe/irradiance.h"
 #include "probe/mapping.h"

@@ -8,7 +8,6 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/memory.h"
-#include "base/memory_limits.h"
 #include "json_file.h"
 #include "run_command.h"
 

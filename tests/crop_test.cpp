@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Perspective crops of a probe: the directions of their pixels, and back through `probe stitch`.
-#include "probe/crop.h"
+#include "probe/convert.h"
 
 #include <gtest/gtest.h>
 

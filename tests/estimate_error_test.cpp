@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors of estimated light by closed forms: on images, and on the three spheres.
-#include "measure/estimate_error.h"
+#include "measure/image_error.h"
 
 #include <gtest/gtest.h>
 

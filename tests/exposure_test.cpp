@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "front/plan_render.h"
-#include "image/auto_exposure.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "image/tonemap.h"

@@ -10,7 +10,6 @@
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "lighting/export/light_file.h"
-#include "lighting/export/light_list.h"
 #include "math/icosphere.h"
 #include "measure/statistics.h"
 #include "probe/irradiance.h"

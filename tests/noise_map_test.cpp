@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where an image is noisy, in words and as a picture.
-#include "measure/noise_map.h"
 
 #include <gtest/gtest.h>
 

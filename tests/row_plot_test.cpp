@@ -12,7 +12,7 @@
 #include "regular_expression.h"
 #include "run_command.h"
 #include "shared_data.h"
-#include "study/report/row_plot.h"
+#include "study/report/row_distribution.h"
 #include "test_probes.h"
 
 namespace chromeball::row_plot_test {

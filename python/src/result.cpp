@@ -14,7 +14,7 @@
 #include "bindings.h"
 #include "front/plan_render.h"
 #include "front/scene_values.h"
-#include "image/auto_exposure.h"
+#include "image/tonemap.h"
 #include "messages.h"
 #include "session/develop_image.h"
 #include "values.h"

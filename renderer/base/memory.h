@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "base/progress.h"
@@ -36,5 +38,22 @@ std::vector<T> longArray(size_t count) {
   forParts(count, kZeroedAtOnce / sizeof(T), [&](size_t, size_t end) { array.resize(end); });
   return array;
 }
+
+// What limits the memory of this process.
+
+// Bytes; infinite where there is no limit.
+struct MemoryLimits {
+  double machine;       // all that it has
+  double addressSpace;  // RLIMIT_AS
+  double controlGroup;  // of Linux, which containers and batch systems set
+
+  double least() const;
+};
+MemoryLimits memoryLimits();
+
+// The least of the limits of a control group, `own`, and of the groups that contain it. `root` is
+// where the groups are mounted: a folder with `memory.max` each (version 2), or with
+// `memory.limit_in_bytes` (version 1).
+double controlGroupLimit(const std::filesystem::path& root, const std::string& own);
 
 }  // namespace chromeball

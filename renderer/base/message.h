@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -51,5 +53,16 @@ void addWarning(Messages& messages, fmt::format_string<Args...> format, Args&&..
 // The messages for a terminal: where more than three differ only in numbers and in quoted names,
 // only the first, with a count of the others.
 Messages condensed(const Messages& messages);
+
+// The words of messages for settings. The library knows no options of the command.
+
+// How messages call a setting of the table (front/settings.h: "render.max_depth"), with a value or,
+// if that is empty, without. The command's is "--max-depth 8".
+using SettingWords = std::function<std::string(std::string_view setting, const std::string& value)>;
+
+// "`render.max_depth` 8"
+inline std::string plainWords(std::string_view setting, const std::string& value) {
+  return fmt::format("`{}`{}{}", setting, value.empty() ? "" : " ", value);
+}
 
 }  // namespace chromeball

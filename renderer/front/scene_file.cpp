@@ -8,11 +8,10 @@
 #include "base/file.h"
 #include "front/arguments.h"
 #include "front/quality.h"
-#include "front/scene_file_camera.h"
 #include "front/scene_file_sections.h"
 #include "front/scene_values.h"
 #include "front/toml_section.h"
-#include "scene/float_rest.h"
+#include "math/vec.h"
 
 namespace chromeball {
 namespace {

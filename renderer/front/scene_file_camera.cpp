@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "front/scene_file_camera.h"
+#include "front/scene_file_sections.h"
 
 #include <fmt/format.h>
 

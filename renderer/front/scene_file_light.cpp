@@ -7,7 +7,7 @@
 
 #include "front/arguments.h"
 #include "front/polygon_file.h"
-#include "lighting/export/light_list.h"
+#include "lighting/export/light_file.h"
 #include "probe/synth.h"
 
 namespace chromeball {

@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "base/text.h"
-#include "front/scene_file_camera.h"
+#include "front/scene_file_sections.h"
 
 namespace chromeball {
 namespace {

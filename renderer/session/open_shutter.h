@@ -3,7 +3,10 @@
 // spaced times, and move along straight lines between these (scene/motion.h).
 #pragma once
 
+#include "description/scene_entries.h"
 #include "session/place_models.h"
+
+#include <vector>
 
 namespace chromeball {
 
@@ -16,5 +19,18 @@ void openShutter(const RenderDescription& description, PlacedModels& placed, Mod
 std::vector<std::string> turnCamera(const RenderDescription& description, const Scene& scene,
                                     const AutomaticView& view, const glm::dvec3& origin,
                                     Camera& camera);
+
+// The times at which animated models look different.
+
+struct ModelCache;
+
+// The models whose animation is chosen, at another time, in seconds.
+std::vector<ModelEntry> modelsAt(std::vector<ModelEntry> models, double seconds);
+
+// The times, in seconds from the one that the models show and fewer than `seconds`, at which one of
+// their animations has changed (animationChanges); of many, at most `most`, evenly chosen.
+// Ascending. Throws InputError.
+std::vector<double> timesOfChange(const std::vector<ModelEntry>& models, double seconds,
+                                  size_t most, ModelCache& cache);
 
 }  // namespace chromeball

@@ -13,7 +13,6 @@
 #include "scene/extended_surface.h"
 #include "scene/framing.h"
 #include "scene/gltf/load_gltf.h"
-#include "session/animation_times.h"
 #include "session/memory_estimate.h"
 #include "session/open_shutter.h"
 #include "session/scene_lighting.h"

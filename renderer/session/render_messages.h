@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "base/setting_words.h"
+#include "base/message.h"
 #include "render/render.h"
 #include "session/load_scene.h"
 #include "session/render_loaded.h"

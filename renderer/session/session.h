@@ -7,7 +7,6 @@
 #include <string>
 
 #include "base/message.h"
-#include "base/setting_words.h"
 #include "description/render_description.h"
 #include "image/io/write_image.h"
 

@@ -2,8 +2,8 @@
 #include "session/stand_models.h"
 
 #include "composite/local_scene.h"
+#include "math/vec.h"
 #include "scene/bounds.h"
-#include "scene/float_rest.h"
 
 namespace chromeball {
 namespace {

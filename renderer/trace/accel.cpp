@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/error.h"
+#include "trace/embree.h"
 #include "trace/filter.h"
 #include "trace/ray.h"
+
+#include <fmt/format.h>
 
 namespace chromeball {
 namespace {
@@ -171,6 +175,22 @@ Rgb Accel::transmittance(const Ray& ray, RayMask mask, const Rgb& attenuation,
                          kRounding * maxComponent(query.largestAttenuation);
   if (!std::isfinite(ray.tMax) && !leavesAll) return query.transmittance;
   return query.transmittance * glm::exp(-glm::max(query.opticalDepth, Rgb(0)));
+}
+
+EmbreeVersion embreeVersion() {
+  const RTCDevice device = rtcNewDevice(nullptr);
+  if (!device) throwRun("Embree does not start: error {}", int(rtcGetDeviceError(nullptr)));
+  const auto get = [&](RTCDeviceProperty property) {
+    return int(rtcGetDeviceProperty(device, property));
+  };
+  const EmbreeVersion found{
+      fmt::format("{}.{}.{}", get(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+                  get(RTC_DEVICE_PROPERTY_VERSION_MINOR), get(RTC_DEVICE_PROPERTY_VERSION_PATCH)),
+      get(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+      : get(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                                                       : 4};
+  rtcReleaseDevice(device);
+  return found;
 }
 
 }  // namespace chromeball

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -128,5 +129,13 @@ class Accel {
 inline Ray rayFrom(const Surface& surface, const vec3& direction, float tMax = INFINITY) {
   return {surface.rayOrigin(direction), direction, tMax, surface.time};
 }
+
+// The Embree that runs, which has code for several instruction sets and chooses one.
+
+struct EmbreeVersion {
+  std::string version;  // "3.13.5"
+  int lanes;            // rays that it traces at once: 4 with SSE, 8 with AVX, 16 with AVX-512
+};
+EmbreeVersion embreeVersion();
 
 }  // namespace chromeball

@@ -2,7 +2,7 @@
 // What `camera solve` and `--camera-file` read: files of fSpy, tables of points and lines, and
 // files with a section [camera].
 #include "front/scene_file.h"
-#include "front/scene_file_camera.h"
+#include "front/scene_file_sections.h"
 #include "fuzz.h"
 #include "scene/solve/observations.h"
 #include "scene/solve/solved_camera.h"

@@ -2,7 +2,7 @@
 // Lists of lights and of polygons in a probe; what is read must be usable.
 #include "front/polygon_file.h"
 #include "fuzz.h"
-#include "lighting/export/light_list.h"
+#include "lighting/export/light_file.h"
 #include "math/vec.h"
 #include "probe/synth.h"
 

@@ -12,7 +12,7 @@
 #include "composite/plate.h"
 #include "front/arguments.h"
 #include "front/scene_file.h"
-#include "front/scene_file_camera.h"
+#include "front/scene_file_sections.h"
 #include "image/io/exif.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "front/plan_render.h"
-#include "image/auto_exposure.h"
+#include "image/tonemap.h"
 #include "messages.h"
 #include "scene_options.h"
-#include "session/meter_exposure.h"
+#include "session/develop_image.h"
 
 namespace chromeball {
 namespace {

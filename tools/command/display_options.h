@@ -18,7 +18,7 @@ void addDisplayOptions(Command app, Settings& settings);
 
 // The transform for the picture in a file, as it is in its display window. An exposure that is left
 // to the picture is that of its header, which the render wrote; else it is chosen from its
-// surfaces, as far as the layers alpha, node or depth tell them (image/auto_exposure.h); it is
+// surfaces, as far as the layers alpha, node or depth tell them (image/tonemap.h); it is
 // printed. 0 for a file of integers, which is as it was shown, unless it was asked for.
 DisplayTransform displayOf(const Settings& settings, const ImageFile& file,
                            const std::string& path);

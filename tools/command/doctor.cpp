@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/memory_limits.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "commands.h"
@@ -15,7 +14,7 @@
 #include "image/io/imageio_module.h"
 #include "json_values.h"
 #include "session/render_report.h"
-#include "trace/embree_version.h"
+#include "trace/accel.h"
 
 namespace chromeball {
 namespace {

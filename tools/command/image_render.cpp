@@ -15,7 +15,6 @@
 #include "noise_in_words.h"
 #include "session/develop_image.h"
 #include "session/image_header.h"
-#include "session/meter_exposure.h"
 #include "viewers/viewers.h"
 
 namespace chromeball {

@@ -44,7 +44,7 @@ void writeError(std::string_view text);
 // All warnings, and the notes unless the command is quiet; each with the option that resolves it.
 void print(const Messages& messages);
 
-// The option of a setting, for SettingWords (base/setting_words.h): "--max-depth 8", "--clamp".
+// The option of a setting, for SettingWords (base/message.h): "--max-depth 8", "--clamp".
 std::string optionInWords(std::string_view setting, const std::string& value);
 
 // The end of a sentence: "; try --probe-scale 0.019", or "; see --memory GB"; empty without one.

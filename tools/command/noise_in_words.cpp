@@ -7,7 +7,7 @@
 
 #include "base/file.h"
 #include "image/io/write_image.h"
-#include "measure/noise_map.h"
+#include "measure/false_color.h"
 
 namespace chromeball {
 namespace {

@@ -15,7 +15,7 @@ std::string inWords(const NoiseFigures& noise, const Image& relativeErrors);
 // the place of what remains.
 std::string noiseInWords(const FinishedImage& image);
 
-// The relative errors of the image as it is, denoised or not (measure/noise_map.h), to a .png.
+// The relative errors of the image as it is, denoised or not (measure/false_color.h), to a .png.
 void writeNoiseMap(const std::string& path, const FinishedImage& image);
 
 }  // namespace chromeball

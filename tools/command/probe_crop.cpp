@@ -9,7 +9,7 @@
 #include "image/io/write_image.h"
 #include "image_files.h"
 #include "messages.h"
-#include "probe/crop.h"
+#include "probe/convert.h"
 #include "probe/load.h"
 
 namespace chromeball {

@@ -11,7 +11,6 @@
 #include "messages.h"
 #include "probe/load.h"
 #include "study/report/row_distribution.h"
-#include "study/report/row_plot.h"
 
 namespace chromeball {
 namespace {

@@ -10,7 +10,6 @@
 #include "image/io/output_file.h"
 #include "image_files.h"
 #include "lighting/export/light_file.h"
-#include "lighting/export/light_list.h"
 #include "messages.h"
 #include "probe/sun_extraction.h"
 #include "probe/synth.h"

@@ -10,7 +10,6 @@
 #include "image_files.h"
 #include "json_values.h"
 #include "lighting/export/light_file.h"
-#include "lighting/export/light_list.h"
 #include "messages.h"
 #include "probe/capture/sun_from_ball.h"
 #include "probe/synth.h"

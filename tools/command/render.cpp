@@ -12,7 +12,6 @@
 #include "scene_notes.h"
 #include "scene_options.h"
 #include "session/develop_image.h"
-#include "session/meter_exposure.h"
 #include "session/render_messages.h"
 #include "viewers/viewers.h"
 

@@ -13,7 +13,6 @@
 #include "messages.h"
 #include "scene_notes.h"
 #include "session/develop_image.h"
-#include "session/meter_exposure.h"
 #include "session/render_messages.h"
 #include "viewers/viewers.h"
 

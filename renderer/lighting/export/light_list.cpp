@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/export/light_list.h"
 
 #include <fmt/format.h>
 

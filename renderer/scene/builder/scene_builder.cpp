@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "math/vec.h"
 #include "scene/builder/complete_mesh.h"
-#include "scene/float_rest.h"
 #include "scene/motion.h"
 #include "scene/texture.h"
 

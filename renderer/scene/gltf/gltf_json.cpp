@@ -11,7 +11,6 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/text.h"
-#include "scene/gltf/object_types.h"
 
 namespace chromeball {
 namespace {

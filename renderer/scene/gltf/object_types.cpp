@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/gltf/object_types.h"
+#include "scene/gltf/gltf_json.h"
 
 #include <algorithm>
 #include <iterator>

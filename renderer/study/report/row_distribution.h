@@ -2,6 +2,7 @@
 // One row of the probe as `importance` samples it, for a plot (HDRI book, figure 9.36).
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -42,5 +43,12 @@ struct RowDistribution {
 // InputError, begun by `location`, if no light is sampled there.
 RowDistribution rowDistribution(const Probe& probe, const Importance& importance, int row,
                                 const AzimuthRange& range, int count, std::string_view location);
+
+// A plot of how `importance` samples one row of a probe, as SVG (HDRI book, figure 9.36).
+
+// A self-contained SVG, from top to bottom over a common azimuth: the luminance of the row's
+// texels, on a logarithmic scale above 0; its cdf, with an arrow for each sample from its number to
+// its azimuth; and the part of the probe around the row, tone mapped, with a mark for each sample.
+std::string rowPlot(const Probe& probe, const RowDistribution& row, const std::string& title);
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/report/row_plot.h"
+#include "study/report/row_distribution.h"
 
 #include <fmt/format.h>
 
