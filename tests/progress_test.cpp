@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/progress.h"
-#include "session/time_kept.h"
+#include "session/render_loaded.h"
 
 namespace chromeball::progress_test {
 namespace {

@@ -9,7 +9,6 @@
 #include "session/memory_estimate.h"
 #include "session/run_composite.h"
 #include "session/scene_lighting.h"
-#include "session/time_kept.h"
 #include "transport/light_groups.h"
 
 namespace chromeball {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 
 #include "approximate/environment_map.h"
 #include "description/render_description.h"
@@ -78,5 +79,16 @@ class FrameScene {
   std::unique_ptr<LoadedScene> loaded_;
   PreparedScene prepared_;
 };
+
+// The part of a time limit that is kept for what follows the samples.
+
+// The settings with the time limit of the samples alone. From the limit is taken what denoising
+// takes, by the time of a small image, and writing the description's files; at most three quarters
+// of it. Without a limit, or a file to write, the settings as they are.
+struct KeptTime {
+  RenderSettings settings;
+  double seconds = 0;
+};
+KeptTime keepTime(const RenderDescription& description);
 
 }  // namespace chromeball

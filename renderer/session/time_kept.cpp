@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "session/time_kept.h"
+#include "session/render_loaded.h"
 
 #include <algorithm>
 
