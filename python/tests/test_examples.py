@@ -87,11 +87,12 @@ def test_arrays_and_cameras_of_a_data_set_belong_together(tmp_path):
     assert up.sum() > 100 and np.median(np.abs(points[:, 1] - np.median(points[:, 1]))) < 0.02
 
 
-def test_notebook():
+def test_notebook(monkeypatch):
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
     pytest.importorskip("ipykernel")
     notebook = nbformat.read(EXAMPLES / "notebook.ipynb", as_version=4)
     assert not any(cell.get("outputs") for cell in notebook.cells)  # it is stored without
+    monkeypatch.setenv("PYTHONPATH", ENVIRONMENT["PYTHONPATH"])
     nbclient.NotebookClient(notebook, timeout=900, kernel_name="python3",
                             resources={"metadata": {"path": str(EXAMPLES)}}).execute()
     shown = [output.get("data", {}) for cell in notebook.cells for output in cell.get("outputs", [])]
