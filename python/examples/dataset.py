@@ -47,6 +47,7 @@ class DataSet:
     def __init__(self, options):
         self.options = options
         self.scene = cb.load(options.model)  # read by the first render, and kept
+        self.probes = {file: cb.Probe(file) for file in options.probes}
         self.views = list(itertools.product(options.probes, range(options.turns), range(options.poses)))
 
     def missing(self):
@@ -73,7 +74,7 @@ class DataSet:
         o, (probe_file, turn, _) = self.options, self.views[number]
         random = np.random.default_rng([o.seed, number])
         rotation = 360 * (turn + random.random()) / o.turns
-        probe = cb.Probe(probe_file).rotated(rotation)
+        probe = self.probes[probe_file].rotated(rotation)
         pose = pose_around(np.array(o.target), o.distance, 360 * random.random(), random.uniform(10, 50))
         K = np.array([[1.4 * o.size, 0, o.size / 2], [0, 1.4 * o.size, o.size / 2], [0, 0, 1]])
         seed = int(random.integers(2**32))

@@ -27,7 +27,7 @@ try:
     from matplotlib import pyplot
 except ImportError:
     sys.exit()
-figure, axes = pyplot.subplots()
+figure, axes = pyplot.subplots(layout="tight")
 for strategy in STRATEGIES:
     rows = [row for row in found.rows if row.strategy == strategy]
     axes.loglog([row.samples for row in rows], [row.rmse for row in rows], "o-", label=strategy)
