@@ -14,6 +14,8 @@ import atexit as _atexit
 
 from . import _core
 from ._camera import Camera
+from ._chi_square import ChiSquare, chi_square
+from ._compare import Comparison, ComparisonRow, compare
 from ._core import version as __version__
 from ._errors import InputError, RenderWarning, RunError
 from ._probe import Lights, Probe
@@ -22,7 +24,8 @@ from ._result import Result
 from ._scene import Material, Scene, load
 from ._strategy import Points, Strategy
 
-__all__ = ["Camera", "InputError", "Lights", "Material", "Points", "Probe", "RenderWarning", "Result", "RunError",
-           "Scene", "Session", "Strategy", "__version__", "keywords", "load", "render"]
+__all__ = ["Camera", "ChiSquare", "Comparison", "ComparisonRow", "InputError", "Lights", "Material", "Points", "Probe",
+           "RenderWarning", "Result", "RunError", "Scene", "Session", "Strategy", "__version__", "chi_square", "compare",
+           "keywords", "load", "render"]
 
 _atexit.register(_core.cancel_all)

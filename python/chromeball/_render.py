@@ -27,7 +27,8 @@ def keywords(name: str | None = None) -> Any:
     return _core.keywords() if name is None else _core.help_of(_values.text("keywords()", name))
 
 
-def _plan(caller: str, scene: SceneLike, probe: ProbeLike, camera: Camera | None, settings: dict[str, Any]) -> Plan:
+def _plan(caller: str, scene: SceneLike, probe: ProbeLike, camera: Camera | None, settings: dict[str, Any],
+          is_compared: bool = False) -> Plan:
     settings = {key: value for key, value in settings.items() if value is not None}
     if probe is not None and not isinstance(probe, Probe):
         if not isinstance(probe, (str, os.PathLike)):
@@ -54,7 +55,7 @@ def _plan(caller: str, scene: SceneLike, probe: ProbeLike, camera: Camera | None
     else:
         raise InputError(f"{caller}: scene is a {type(scene).__name__}; it should be a chromeball.Scene, a file or a dict")
     return _core.plan(source, geometry, None if probe is None else probe._map,
-                      None if camera is None else camera.keys, settings, strategy, caller)
+                      None if camera is None else camera.keys, settings, strategy, is_compared, caller)
 
 
 def _crop(caller: str, window: Any) -> str:

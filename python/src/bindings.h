@@ -17,5 +17,6 @@ void bindPlan(nb::module_& m);
 void bindResult(nb::module_& m);
 void bindSession(nb::module_& m);
 void bindStrategy(nb::module_& m);
+void bindStudy(nb::module_& m);
 
 }  // namespace chromeball::python

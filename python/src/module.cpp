@@ -14,4 +14,5 @@ NB_MODULE(_core, m) {
   bindResult(m);
   bindSession(m);
   bindStrategy(m);
+  bindStudy(m);
 }

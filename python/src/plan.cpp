@@ -14,6 +14,7 @@
 #include "geometry.h"
 #include "probe_map.h"
 #include "python_light.h"
+#include "study.h"
 #include "values.h"
 
 namespace chromeball::python {
@@ -49,13 +50,14 @@ void place(const ProbeMap& probe, RenderDescription& description) {
 
 Plan planOf(nb::handle scene, const Geometry* geometry, const ProbeMap* probe,
             const std::optional<Dict>& camera, const Dict& keywords, const nb::object& strategy,
-            const std::string& caller) {
+            bool isCompared, const std::string& caller) {
   SceneFile file = sceneOf(scene);
   if (camera) replaceCamera(file, tableOf(*camera, "Camera()"), "Camera()");
   Settings settings = keywordSettings(tableOf(keywords, caller), caller);
   if (probe && settings.has("probe.mapping"))
     throwInput("{}: the probe is in memory; give its mapping to chromeball.Probe()",
                settings.location("probe.mapping"));
+  if (isCompared) keepCompared(file, settings, caller);
   Plan plan{planRender(std::move(file), settings), size_t(settings.get<uint64_t>("threads")),
             strategy};
   RenderDescription& description = plan.description;
@@ -100,7 +102,7 @@ void bindPlan(nb::module_& m) {
   nb::class_<Plan>(m, "Plan", "A render as it was asked for.");
   m.def("plan", planOf, nb::arg("scene"), nb::arg("geometry").none(), nb::arg("probe").none(),
         nb::arg("camera").none(), nb::arg("keywords"), nb::arg("strategy").none(),
-        nb::arg("caller"));
+        nb::arg("is_compared"), nb::arg("caller"));
   m.def("check_scene", checkScene, nb::arg("scene"), nb::arg("name"),
         "Throws InputError for a scene whose keys or values are wrong.");
   m.def("check_camera", checkCamera, nb::arg("camera"), nb::arg("name"),

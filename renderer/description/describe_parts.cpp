@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <filesystem>
 
 #include "base/hash.h"
@@ -113,9 +112,9 @@ PartJson partOf(const std::vector<Part>& parts) {
 }
 
 uint64_t pixelHash(const Image& image) {
-  uint64_t sum = hash(uint64_t(image.width), uint64_t(image.height), uint64_t(image.channels));
-  for (const float texel : image.texels) sum = hash(sum, uint64_t(std::bit_cast<uint32_t>(texel)));
-  return sum;
+  const auto* bytes = reinterpret_cast<const char*>(image.texels.data());
+  return hash(uint64_t(image.width), uint64_t(image.height), uint64_t(image.channels),
+              checksum({bytes, image.texels.size() * sizeof(float)}));
 }
 
 // Loading may decide the reflectance.

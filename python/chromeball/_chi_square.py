@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether the samples of a strategy have its pdf."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Callable, NamedTuple
+
+from . import _arrays, _core
+from ._errors import InputError
+from ._strategy import CheckedStrategy
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+_HEIGHTS, _AZIMUTHS = 24, 48
+_MOST_HALVINGS, _MOST_CELLS, _BATCH = 12, 1 << 19, 1 << 18
+_NORMALS = ((0, 1, 0), (0.6, 0, -0.8), (-0.36, -0.48, 0.8))
+
+
+class ChiSquare(NamedTuple):
+    """Pearson's chi-square test of a strategy's samples against its pdf."""
+
+    statistic: float
+    degrees_of_freedom: int
+    #: The probability of such a statistic if the pdf is right: below 1e-4 it is wrong.
+    p_value: float
+    #: The integral of pdf() over the sphere, the mean over the points: 1 minus the fraction of samples that are none.
+    total: float
+    #: The fraction of samples whose pdf differs from that of pdf() by more than a hundredth.
+    mismatch: float
+
+
+def chi_square(strategy: Any, points: Any = None, *, samples: int = 100_000, seed: int = 0) -> ChiSquare:
+    """Compares the numbers of directions of sample() in 24 x 48 bins of equal solid angle with the integrals of pdf().
+
+    strategy: a Strategy, or any object with sample() and pdf(). points: Points(positions [P,3] or None, normals [P,3]), each
+    of which gets `samples` samples; None: three normals where samples depend on them. Bins in which less than 5 are expected
+    are pooled.
+    """
+    import numpy as np
+
+    checked = CheckedStrategy(strategy)
+    generator = np.random.default_rng(seed)
+    if samples < 1:
+        raise InputError(f"chi_square(): samples is {samples}; it should be 1 or more")
+    positions, normals = _points(checked, points, generator.random((256, 2)))
+    seen, expected, totals, mismatches = [], [], [], []
+    for position, normal in zip(positions, normals):
+
+        def at(count: int) -> tuple[Any, Any]:
+            return np.tile(position, (count, 1)), np.tile(normal, (count, 1))
+
+        directions, _, pdf = checked.sample(*at(samples), generator.random((samples, 2)))
+        integrals = _integrals(lambda w: checked.pdf(w, *at(len(w))), 0.05 / samples)
+        found = pdf > 0
+        counts = np.bincount(_bins(directions[found]), minlength=len(integrals))
+        total = integrals.sum()
+        seen += [*counts, np.count_nonzero(~found)]
+        expected += [*(integrals * samples), max(0, 1 - total) * samples]
+        totals.append(total)
+        again = checked.pdf(directions, *at(samples))
+        mismatches.append(np.mean(np.abs(again - pdf)[found] > 0.01 * pdf[found]) if found.any() else 0)
+    return ChiSquare(*_core.chi_square(seen, expected), float(np.mean(totals)), float(np.mean(mismatches)))
+
+
+def _points(checked: CheckedStrategy, points: Any, u: NDArray[np.float64]) -> tuple[Any, Any]:
+    """Positions and normals [P,3]: the given ones, or those that are needed."""
+    import numpy as np
+
+    if points is not None:
+        try:
+            positions, normals = points
+        except (TypeError, ValueError):
+            raise InputError("chi_square(): points should be Points(positions, normals)") from None
+        normals = _arrays.directions("normals", normals)
+        if positions is None:
+            return np.zeros_like(normals), normals
+        return _arrays.array("positions", positions, (len(normals), 3), "float32"), normals
+    normals = _arrays.directions("normals", _NORMALS)
+    first, *others = (checked.sample(np.zeros((len(u), 3), np.float32), np.tile(n, (len(u), 1)), u) for n in normals)
+    depends = any(not np.array_equal(a, b) for other in others for a, b in zip(first, other))
+    normals = normals if depends else normals[:1]
+    return np.zeros_like(normals), normals
+
+
+def _bins(directions: NDArray[np.float32]) -> NDArray[np.intp]:
+    import numpy as np
+
+    height = ((directions[:, 1].astype(float) + 1) / 2 * _HEIGHTS).astype(int).clip(0, _HEIGHTS - 1)
+    turns = np.arctan2(directions[:, 2], directions[:, 0]).astype(float) / (2 * np.pi) % 1
+    bins: NDArray[np.intp] = height * _AZIMUTHS + (turns * _AZIMUTHS).astype(int).clip(0, _AZIMUTHS - 1)
+    return bins
+
+
+def _integrals(pdf: Callable[[Any], Any], tolerance: float) -> NDArray[np.float64]:
+    """The integral of a pdf over each bin. Cells are divided into four until that changes less than the tolerance."""
+    import numpy as np
+
+    def rule(row: Any, column: Any, halvings: int) -> Any:
+        """The integrals over cells, by the 4 x 4 points in the middles of their parts."""
+        n = 4 << halvings
+        i, j = (np.arange(16) // 4, np.arange(16) % 4)
+        y = ((4 * row[:, None] + i + 0.5) / (n * _HEIGHTS) * 2 - 1).ravel()
+        turn = ((4 * column[:, None] + j + 0.5) / (n * _AZIMUTHS) * 2 * np.pi).ravel()
+        r = np.sqrt(1 - y * y)
+        directions = np.stack([r * np.cos(turn), y, r * np.sin(turn)], -1).astype(np.float32)
+        parts = [pdf(directions[k : k + _BATCH]) for k in range(0, len(directions), _BATCH)]
+        angle = 4 * np.pi / (_HEIGHTS * _AZIMUTHS) / (1 << halvings) ** 2
+        return np.concatenate(parts).astype(float).reshape(-1, 16).mean(1) * angle
+
+    bins = np.arange(_HEIGHTS * _AZIMUTHS)
+    row, column = np.divmod(bins, _AZIMUTHS)
+    found: NDArray[np.float64] = np.zeros(len(bins))
+    estimate = rule(row, column, 0)
+    for halvings in range(1, _MOST_HALVINGS + 1):
+        row, column = (2 * row[:, None] + [0, 0, 1, 1]).ravel(), (2 * column[:, None] + [0, 1, 0, 1]).ravel()
+        bins = bins.repeat(4)
+        fine = rule(row, column, halvings)
+        change = np.abs(fine.reshape(-1, 4).sum(1) - estimate).repeat(4)
+        # The first points may miss a feature.
+        rough = (change > tolerance) | (halvings < 3)
+        if halvings == _MOST_HALVINGS or 4 * np.count_nonzero(rough) > _MOST_CELLS:
+            rough[:] = False
+        np.add.at(found, bins[~rough], fine[~rough])
+        bins, row, column, estimate = bins[rough], row[rough], column[rough], fine[rough]
+        if not len(bins):
+            break
+    return found

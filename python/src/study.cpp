@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/study.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include "arrays.h"
+#include "base/error.h"
+#include "bindings.h"
+#include "description/capabilities.h"
+#include "front/scene_values.h"
+#include "measure/bias_variance.h"
+#include "measure/chi_square.h"
+#include "plan.h"
+#include "study.h"
+#include "study/result_tables.h"
+
+namespace chromeball::python {
+namespace {
+
+// The plan as a render of this row, with its own samples and seed. A strategy of Python's has no
+// modes.
+Plan renderOf(const Plan& plan, const std::string& row, uint32_t samples, uint64_t seed) {
+  Plan render = plan;
+  RenderDescription& description = render.description;
+  if (plan.strategy.is_none()) {
+    rowNamed(row, "compare()").applyTo(description);
+  } else {
+    description.settings = Row{}.applied(description.settings);
+    description.straightGlassShadows = false;
+  }
+  description.settings.samples = samples;
+  description.settings.seed = seed;
+  if (const Conflict* found = conflictIn(description))
+    throwInput("compare(): {}: {}", row, found->why);
+  return render;
+}
+
+using Pair = nb::typed<nb::tuple, double, double>;  // a number and its standard error
+
+Pair pairOf(const Estimate& e) { return nb::make_tuple(e.mean, e.standardError); }
+
+// relMSE, variance, squared bias and bias, and the variance of the reference.
+nb::typed<nb::tuple, Pair, Pair, Pair, Pair, double> errorsOf(
+    const std::vector<ArrayIn<float>>& repeats, const ArrayIn<float>& reference,
+    const std::optional<ArrayIn<float>>& squaredError, const std::string& row) {
+  std::vector<Image> images;
+  for (const ArrayIn<float>& repeat : repeats) images.push_back(imageOf(repeat));
+  const Reference truth{imageOf(reference), squaredError ? imageOf(*squaredError) : Image()};
+  const bool joins = !row.empty() && rowNamed(row, "compare()").joinsPixels();
+  const BiasVariance e =
+      biasVariance(images, truth, joins ? PixelNoise::Joined : PixelNoise::Independent);
+  return nb::make_tuple(pairOf(e.relMse), pairOf(e.variance), pairOf(e.squaredBias), pairOf(e.bias),
+                        e.referenceVariance);
+}
+
+nb::typed<nb::tuple, double, int, double> chiSquareOf(const std::vector<double>& observed,
+                                                      const std::vector<double>& expected) {
+  const ChiSquare test = chiSquareTest(observed, expected);
+  return nb::make_tuple(test.statistic, test.degreesOfFreedom, test.pValue);
+}
+
+}  // namespace
+
+void keepCompared(SceneFile& scene, const Settings& given, const std::string& caller) {
+  if (scene.composite)
+    throwInput("{}: the scene has a composite; strategies are compared without", caller);
+  for (const Setting& setting : settingTable()) {
+    if (!setting.renderOnly) continue;
+    if (given.has(setting.name()))
+      throwInput("{}: {} is no setting of a comparison, which varies or ignores it", caller,
+                 keywordOf(setting.name()));
+    scene.settings.erase(setting.name());
+  }
+}
+
+void bindStudy(nb::module_& m) {
+  m.attr("REFERENCE") = kReference;
+  m.attr("REFERENCE_PARTS") = Study::kReferenceParts;
+  m.attr("MIN_REPEATS") = Study::kMinRepeats;
+  m.def(
+      "seed_of",
+      [](const std::string& row, uint32_t samples, int repeat, uint64_t seed) {
+        return seedOf({row, {false, double(samples)}, repeat}, seed);
+      },
+      nb::arg("row"), nb::arg("samples"), nb::arg("repeat"), nb::arg("seed"),
+      "The seed of a render of a comparison.");
+  m.def(
+      "row_name", [](const std::string& name) { return rowNamed(name, "compare()").name(); },
+      nb::arg("name"), "The complete name of a row, such as importance+denoise.");
+  m.def("render_of", renderOf, nb::arg("plan"), nb::arg("row"), nb::arg("samples"),
+        nb::arg("seed"));
+  m.def("errors_of", errorsOf, nb::arg("repeats"), nb::arg("reference"),
+        nb::arg("squared_error").none(), nb::arg("row"));
+  m.def(
+      "significant_text",
+      [](double mean, double error) {
+        return significantText({mean, error});
+      },
+      nb::arg("mean"), nb::arg("standard_error"),
+      "3.1 +- 0.4, or \"not significant (+- 0.4)\": the 95% interval.");
+  m.def(
+      "positive_text",
+      [](double mean, double error) {
+        return positiveText({mean, error});
+      },
+      nb::arg("mean"), nb::arg("standard_error"), "The same for a mean of positive numbers.");
+  m.def("chi_square", chiSquareOf, nb::arg("observed"), nb::arg("expected"),
+        "Statistic, degrees of freedom and p-value; cells of few expected counts are pooled.");
+}
+
+}  // namespace chromeball::python
