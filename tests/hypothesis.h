@@ -2,7 +2,6 @@
 // Hypothesis tests of means, besides those of measure/statistics.h.
 #pragma once
 
-#include "measure/chi_square.h"
 #include "measure/statistics.h"
 
 namespace chromeball {

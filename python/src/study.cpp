@@ -13,7 +13,7 @@
 #include "description/capabilities.h"
 #include "front/scene_values.h"
 #include "measure/bias_variance.h"
-#include "measure/chi_square.h"
+#include "measure/statistics.h"
 #include "plan.h"
 #include "study.h"
 #include "study/result_tables.h"

@@ -75,4 +75,14 @@ struct Agreement {
 // `a` and `b`: each at least two RGB images; all images are independent and of one size.
 Agreement agreement(std::span<const Image> a, std::span<const Image> b);
 
+// Pearson's chi-square test of observed against expected counts. Cells with an expected count below
+// `minimum` are pooled.
+struct ChiSquare {
+  double statistic = 0;
+  int degreesOfFreedom = 0;
+  double pValue = 1;  // probability of such a statistic if the distribution is as expected
+};
+ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double> expected,
+                        double minimum = 5);
+
 }  // namespace chromeball
