@@ -171,7 +171,7 @@ TEST(Session, UpdateRedoesWhatDiffers) {
   EXPECT_TRUE(isOnly(change("own strategy",
                             [&] {
                               d.lighting.strategy = "uniform";
-                              d.lighting.make = [](const Probe& probe) {
+                              d.lighting.make = [](const Probe& probe, const glm::dvec3&) {
                                 return makeStrategy("importance", probe, Mis::Power, "test");
                               };
                             }),

@@ -51,7 +51,7 @@ def chi_square(strategy: Any, points: Any = None, *, samples: int = 100_000, see
         def at(count: int) -> tuple[Any, Any]:
             return np.tile(position, (count, 1)), np.tile(normal, (count, 1))
 
-        directions, _, pdf = checked.sample(*at(samples), generator.random((samples, 2)))
+        directions, pdf = checked.sample(*at(samples), generator.random((samples, 2)))
         integrals = _integrals(lambda w: checked.pdf(w, *at(len(w))), 0.05 / samples)
         found = pdf > 0
         counts = np.bincount(_bins(directions[found]), minlength=len(integrals))

@@ -55,9 +55,10 @@ class Material:
     def sample(self, wo: Any, u: Any) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
         """Directions `wi` [N,3], weights f |cos| / pdf [N,3], and pdf [N] for `wo` [N,3], from numbers `u` [N,3] in [0, 1); the
         third chooses the lobe. The pdf of the only direction of a mirror is 0; where light is absorbed, the weight is."""
-        numbers = _arrays.array("u", u, ("N", 3), "float32")
+        numbers = _arrays.array("u", u, ("N", 3), "float64")
         if not ((numbers >= 0) & (numbers < 1)).all():
             raise InputError("u: should be 0 or above, and below 1")
+        numbers = numbers.clip(0, 1 - 2**-24).astype("float32")  # below 1 after rounding
         (units,) = _directions(wo=wo)
         if len(units) != len(numbers):
             raise InputError(f"u: has the shape {list(numbers.shape)}; it should be [{len(units)},3]")

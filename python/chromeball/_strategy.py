@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 class Points(NamedTuple):
     """Points that receive light."""
 
-    #: [N,3] metres
-    positions: NDArray[np.float32]
+    #: [N,3] metres, in the world
+    positions: NDArray[Any]
     #: [N,3] unit shading normals, on the viewer's side
     normals: NDArray[np.float32]
 
@@ -87,7 +87,7 @@ class CheckedStrategy:
         kind = type(strategy)
         self.name = f"{kind.__module__}.{kind.__qualname__}"  # no name of a built-in one
 
-    def sample(self, positions: Any, normals: Any, u: Any) -> tuple[Any, Any, Any]:
+    def sample(self, positions: Any, normals: Any, u: Any) -> tuple[Any, Any]:
         import numpy as np
 
         found = self._strategy.sample(Points(positions, normals), u)
@@ -102,7 +102,7 @@ class CheckedStrategy:
                 "finite and above 0, or 0 with black radiance")
         _refuse("directions of sample()", directions,
                 ~(np.abs(np.einsum("ij,ij->i", directions, directions) - 1) < 1e-3), "unit vectors")
-        return directions, radiance, pdf
+        return directions, pdf
 
     def pdf(self, directions: Any, positions: Any, normals: Any) -> Any:
         import numpy as np

@@ -67,6 +67,7 @@ Plan planOf(nb::handle scene, const Geometry* geometry, const ProbeMap* probe,
   if (!strategy.is_none()) {
     description.lighting.strategy = textOf(strategy.attr("name"), "strategy");
     description.lighting.make = makerOf(strategy);
+    description.origins.set("lighting.strategy", caller + ": strategy");
   }
   if (description.models.empty() && !description.scene)
     throwInput("{}: the scene has no models, and no meshes", caller);

@@ -16,6 +16,7 @@ namespace nb = nanobind;
 
 // Makes the strategy for LightingDescription::make. `checked` is a CheckedStrategy
 // (python/chromeball/_strategy.py), which must live as long as the render; its exceptions end that.
-std::function<std::unique_ptr<LightSource>(const Probe&)> makerOf(nb::handle checked);
+std::function<std::unique_ptr<LightSource>(const Probe&, const glm::dvec3& origin)> makerOf(
+    nb::handle checked);
 
 }  // namespace chromeball::python

@@ -333,3 +333,86 @@ def test_a_strategy_that_refers_to_its_session_is_freed_with_it(camera):
     del strategy
     gc.collect()
     assert gone() is None
+
+
+def floor(x=0.0, size=1.0):
+    scene = cb.Scene()
+    square = np.array([[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]]) * size
+    scene.add_mesh(square, [[0, 1, 2], [0, 2, 3]], material=cb.Material(base_color=0.5, specular=0),
+                   transform=[[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    return scene
+
+
+def sunny():
+    """A grey probe with a small bright window above the horizon."""
+    texels = np.full((32, 64, 3), 0.2, np.float32)
+    texels[8:10, 31:33] = 400
+    return cb.Probe(texels)
+
+
+WINDOW = [[28, 12], [36, 12], [36, 6], [28, 6]]  # texels around it
+
+
+@pytest.mark.parametrize("mis", ["off", "balance"])
+@pytest.mark.parametrize("settings", [
+    dict(), dict(probe_scale=2), dict(probe_rotation=70), dict(light_from="suns"), dict(light_from="rest"), dict(source=True),
+    dict(layers=["light_groups"])], ids=str)
+def test_the_light_is_the_probe_of_the_render(settings, mis, camera):
+    """Whatever turns, scales or divides it: the strategy chooses directions only."""
+    probe = sunny()
+    settings = dict(settings)
+    scene = floor()
+    if settings.pop("source", False):
+        scene = cb.Scene(source=[{"probe_polygon": WINDOW}])
+        scene.add_mesh(np.array([[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]]), [[0, 1, 2], [0, 2, 3]],
+                       material=cb.Material(base_color=0.5, specular=0))
+
+    def mean(strategy, samples):
+        image = cb.render(scene, probe, camera, size=(12, 8), crop="2,3,8,3", samples=samples, adaptive="off", max_depth=1,
+                          strategy=strategy, mis=mis, **settings)
+        return image.color.mean()
+
+    own = cb.Strategy("importance", probe.rotated(settings.get("probe_rotation", 0)), mis=False)  # else it is unbiased, but noisy
+    expected = mean("importance", 256)
+    assert abs(mean(own, 256) / expected - 1) < 0.02
+
+
+@pytest.mark.parametrize("x", [0.0, 100.0, 1e6])
+def test_points_are_in_the_world(x):
+    seen = []
+
+    class Where(Sphere):
+        def sample(self, points, u):
+            seen.append(points.positions.copy())
+            return super().sample(points, u)
+
+    cb.render(floor(x), cb.Probe(sky()), cb.Camera.look_at((x, 3, 3), (x, 0, 0)), size=(8, 8), samples=4,
+              strategy=Where(cb.Probe(sky())))
+    positions = np.concatenate(seen)
+    assert positions.dtype == np.float64
+    assert x - 1.001 < positions[:, 0].min() < x - 0.5 and x + 0.5 < positions[:, 0].max() < x + 1.001
+
+
+def test_calls_of_a_render_do_not_overlap(camera):
+    inside = []
+
+    class Slow(Sphere):
+        def sample(self, points, u):
+            inside.append(1)
+            assert len(inside) == 1
+            self.probe.irradiance(np.repeat(UP, 200, 0))  # releases the interpreter's lock
+            inside.pop()
+            return super().sample(points, u)
+
+    cb.render(square_scene(), cb.Probe(sky()), camera, size=(32, 24), samples=16, strategy=Slow(cb.Probe(sky())), threads=2)
+
+
+@pytest.mark.parametrize("settings", [dict(integrator="environment-map"), dict(max_depth=0)], ids=str)
+def test_a_strategy_without_effect_is_named(settings, camera):
+    with pytest.warns(cb.RenderWarning, match="strategy has no effect"):
+        lit_by(Sphere(cb.Probe(sky())), camera, 1, samples=1, **settings)
+
+
+def test_numbers_that_round_to_1_are_below_it():
+    wi, weight, pdf = cb.Material(metallic=1, roughness=0.4).sample([[0.6, 0, 0.8]], [[0.3, 0.2, 1 - 1e-9]])
+    assert np.isfinite(wi).all() and np.isfinite(weight).all() and np.isfinite(pdf).all()

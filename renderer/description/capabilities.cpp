@@ -117,7 +117,7 @@ constexpr Feature kNoGround{"no ground of a composite", "", [](const D& d) {
                                                          CompositeDescription::GroundPlane::Always;
                             }};
 constexpr Feature kNoProbeFile{"no probe's file", "probe.file",
-                               [](const D& d) { return !d.probe.file; }};
+                               [](const D& d) { return !d.probe.file && !d.probe.map; }};
 constexpr Feature kNotImportance{
     "another strategy than importance", "lighting.strategy",
     [](const D& d) { return resolveStrategy(d.lighting.strategy) != "importance"; }};

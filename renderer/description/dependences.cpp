@@ -155,7 +155,8 @@ std::span<const Dependence> dependences() { return kDependences; }
 
 std::string namedOrigin(const RenderDescription& description, std::string_view setting) {
   const std::string origin = description.origins.of(setting);
-  const bool isName = origin.starts_with("--") || origin == setting;
+  const bool isName = origin.starts_with("--") || origin == setting ||
+                      origin.find("(): ") != std::string::npos;  // a program's "render(): noise"
   return isName ? origin : fmt::format("{}: `{}`", origin, setting);
 }
 

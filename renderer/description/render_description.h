@@ -80,8 +80,9 @@ struct LightingDescription {
   std::optional<double> sunAngle;  // StrategyOptions::sunAngle
   bool showLights = false;         // StrategyOptions::showLights
   // A program's own strategy, which takes the place of the named one; empty: none. The probe
-  // outlives the strategy that it makes. `strategy` names it in headers and identities.
-  std::function<std::unique_ptr<LightSource>(const Probe&)> make = {};
+  // outlives the strategy that it makes. `strategy` names it in headers and identities. `origin`:
+  // of LightPoint::position in the world, metres.
+  std::function<std::unique_ptr<LightSource>(const Probe&, const glm::dvec3& origin)> make = {};
 };
 
 struct CompositeDescription {

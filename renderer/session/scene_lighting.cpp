@@ -191,7 +191,8 @@ std::unique_ptr<LightSource> makeLighting(const LoadedScene& loaded) {
   reportWork("lighting", 0);
   const bool splitsProbe = description.settings.wantsGroups();
   if (description.lighting.make)
-    return withSources(description.lighting.make(sampledProbe(loaded)), loaded, splitsProbe);
+    return withSources(description.lighting.make(sampledProbe(loaded), loaded.origin), loaded,
+                       splitsProbe);
   return makeLighting({description.lighting.strategy, description.origins.of("lighting.strategy")},
                       description.settings.mis, loaded, splitsProbe);
 }

@@ -45,7 +45,7 @@ int main(int argc, char** argv) try {
   for (const char* name : {"uniform", "importance", "cosine"}) {
     description.lighting.strategy = name;
     if (name == std::string("cosine"))
-      description.lighting.make = [](const Probe& probe) {
+      description.lighting.make = [](const Probe& probe, const glm::dvec3&) {
         return std::make_unique<Cosine>(probe);
       };
     std::printf("%s %.4g\n", name, imageError(rendered(description), reference).relMse);
