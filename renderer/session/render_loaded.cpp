@@ -108,10 +108,13 @@ FinishedRender renderLoaded(const LoadedScene& loaded, const PreparedScene& prep
             description.origins.of("render.time"), kept.seconds,
             description.settings.denoisesAtEnd() ? "denoising and " : "");
   if (result.render.overrun > 0)
-    addWarning(result.messages,
-               "{}: the first pass, which is always completed, took {:.2g} s, longer than {:g}",
-               description.origins.of("render.time"), result.render.overrun,
-               *kept.settings.timeLimit);
+    addWarning(
+        result.messages,
+        "{}: the first pass, which is always completed, took {:.2g} s, longer than {:.2g} s{}",
+        description.origins.of("render.time"), result.render.overrun, *kept.settings.timeLimit,
+        kept.seconds > 0
+            ? fmt::format(", which {:g} s leave for the samples", *description.settings.timeLimit)
+            : "");
   return result;
 }
 
