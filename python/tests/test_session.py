@@ -188,11 +188,13 @@ def test_a_session_in_a_cycle_is_freed(scene, camera, small):
 
 
 def test_ctrl_c_ends_a_render(scene, camera, small):
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # it is ignored in background jobs
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         cb.render(scene, cb.Probe(sky()), camera, **{**small, "samples": MANY})
     timer.join()
+    signal.signal(signal.SIGINT, before)
     assert cb.render(scene, cb.Probe(sky()), camera, **small).is_complete
 
 
