@@ -415,6 +415,10 @@ TEST_F(SlowCommandCompare, summarisesTheResultInWords) {
   ASSERT_EQ(result.status, 0);
   EXPECT_NE(result.out.find("\nUse "), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("\nOf 1 biased, "), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find(" (biased) "), result.out.rfind(" (biased) ")) << result.out;
+  EXPECT_NE(result.out.find(" (biased) "), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("\nReport: " + dir() + "/index.html\n"), std::string::npos)
+      << result.out;
   const std::string page = fileContents(dir() + "/index.html");
   EXPECT_LT(page.find("<li>Use "), page.find("How fast the error falls"));
 }

@@ -188,7 +188,8 @@ TEST_F(CommandComposite, WarnsOfALocalSceneWithoutSurfaces) {
   const auto warning = [&](const std::string& local) {
     return render(scene("plate = \"plate.exr\"\nlocal_scene = \"" + local + "\""), {}).error;
   };
-  EXPECT_NE(warning("pier").find("`pier`, the local scene, has no visible surface"), std::string::npos)
+  EXPECT_NE(warning("pier").find("`pier`, the local scene, has no visible surface"),
+            std::string::npos)
       << warning("pier");
   EXPECT_EQ(warning("ground").find("has no visible surface"), std::string::npos);
 }

@@ -131,10 +131,12 @@ std::string resultsTable(const Study& study, const StudyResults& results) {
                   "seconds", "relMSE", "bias %", cells.front()->budget.label());
   for (const Cell* cell : cells) {
     const Estimate& bias = cell->error.bias;
-    table += fmt::format("{:<26} {:>24} {:>18} {:>24} {:>22}\n", cell->strategy,
-                         ratioText(cell->efficiency), positiveText(cell->seconds),
-                         positiveText(cell->error.relMse),
-                         significantText({100 * bias.mean, 100 * bias.standardError}));
+    const bool isUnbiased =
+        std::ranges::find(results.strategies, cell->strategy, &StrategyResult::name)->unbiased;
+    table += fmt::format(
+        "{:<26} {:>24} {:>18} {:>24} {:>22}\n", cell->strategy + (isUnbiased ? "" : " (biased)"),
+        ratioText(cell->efficiency), positiveText(cell->seconds), positiveText(cell->error.relMse),
+        significantText({100 * bias.mean, 100 * bias.standardError}));
   }
   return table;
 }

@@ -251,6 +251,7 @@ void compare(const CompareArguments& a, const Command& command) {
   if (verbosity().quiet) return;
   fmt::print("{}", resultsTable(study, all));
   for (const std::string& sentence : verdict(study, all)) fmt::print("{}\n", sentence);
+  fmt::print("Report: {}\n", (fs::path(study.folder) / "index.html").string());
 }
 
 }  // namespace
