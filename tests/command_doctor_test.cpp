@@ -8,6 +8,7 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "base/memory.h"
+#include "instrumented.h"
 #include "json_file.h"
 #include "run_command.h"
 
@@ -32,6 +33,7 @@ TEST(SlowCommandDoctor, TellsOfThisMachine) {
 }
 
 TEST(SlowCommandDoctor, SaysWhatIsMissing) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
   const CommandResult result = runExecutable({"doctor"}, "", SIGINT, {.memory = size_t(1) << 30});
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.out.find("address space 1.07 GB"), std::string::npos) << result.out;
