@@ -86,7 +86,7 @@ def colors(name: str, value: Any) -> NDArray[Any]:
     channels = array(name, found, ("V", found.shape[1]), "float64") / most
     wrong = np.flatnonzero(~((channels >= 0) & (channels <= 1)).all(1))
     if wrong.size:
-        raise InputError(f"{name}[{wrong[0]}]: {found[wrong[0]].tolist()} should be from 0 to 1, or be bytes (uint8)")
+        raise InputError(f"{name}[{wrong[0]}]: {found[wrong[0]].tolist()} should be from 0 to 1, or be uint8 or uint16, which are fractions of their most")
     opaque = np.ones((len(channels), 4), np.float32)
     opaque[:, : channels.shape[1]] = channels
     return opaque

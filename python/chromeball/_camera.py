@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any, Sequence
 
-from . import _arrays
+from . import _arrays, _values
 from ._core import check_camera
 from ._errors import InputError
 
@@ -69,10 +69,16 @@ class Camera:
         OpenCV, which has the middle of the first pixel there. `distortion` = (k1, k2) are OpenCV's radial coefficients.
         """
         k = _arrays.array("K", K, (3, 3), "float64")
-        width, height = size
+        if not all(math.isfinite(x) for x in k.flat):
+            raise InputError("K: all of it should be finite")
+        width, height = (_values.whole("size", n, 1, 2**17) for n in size)
         fx, fy, cx, cy = (float(x) for x in (k[0, 0], k[1, 1], k[0, 2], k[1, 2]))
-        if not all(math.isfinite(x) for x in (fx, fy, cx, cy)) or fx <= 0 or fy <= 0:
-            raise InputError("K: its focal lengths should be above 0, and all of it finite")
+        if k[1, 0] != 0 or (k[2] != (0, 0, 1)).any():
+            raise InputError(f"K: {k.tolist()} should be [[f, 0, cx], [0, f, cy], [0, 0, 1]]")
+        if fx <= 0 or fy <= 0:
+            raise InputError("K: its focal lengths should be above 0")
+        if "fov" in keys:
+            raise InputError("fov: K has it")
         if abs(fx - fy) > 1e-3 * fy or abs(float(k[0, 1])) > 1e-3:
             raise InputError(f"K: focal lengths {fx:g} and {fy:g}, skew {float(k[0, 1]):g}: pixels should be square")
         keys = {"principal_point": (cx / width, cy / height), **keys}

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Callable, NamedTuple
 
-from . import _arrays, _core
+from . import _arrays, _core, _values
 from ._errors import InputError
 from ._strategy import CheckedStrategy
 
@@ -41,27 +41,28 @@ def chi_square(strategy: Any, points: Any = None, *, samples: int = 100_000, see
     import numpy as np
 
     checked = CheckedStrategy(strategy)
-    generator = np.random.default_rng(seed)
+    generator = np.random.default_rng(_values.whole("seed", seed, 0, 2**64 - 1))
     if samples < 1:
         raise InputError(f"chi_square(): samples is {samples}; it should be 1 or more")
     positions, normals = _points(checked, points, generator.random((256, 2)))
-    seen, expected, totals, mismatches = [], [], [], []
+    statistic, degrees, totals, mismatches = 0.0, 0, [], []
     for position, normal in zip(positions, normals):
 
         def at(count: int) -> tuple[Any, Any]:
             return np.tile(position, (count, 1)), np.tile(normal, (count, 1))
 
         directions, pdf = checked.sample(*at(samples), generator.random((samples, 2)))
-        integrals = _integrals(lambda w: checked.pdf(w, *at(len(w))), 0.05 / samples)
         found = pdf > 0
+        integrals = _integrals(lambda w: checked.pdf(w, *at(len(w))), directions[found], samples)
         counts = np.bincount(_bins(directions[found]), minlength=len(integrals))
         total = integrals.sum()
-        seen += [*counts, np.count_nonzero(~found)]
-        expected += [*(integrals * samples), max(0, 1 - total) * samples]
+        # Each point has a number of samples of its own.
+        of_point = _core.chi_square([*counts, np.count_nonzero(~found)], [*(integrals * samples), max(0, 1 - total) * samples])
+        statistic, degrees = statistic + of_point[0], degrees + of_point[1]
         totals.append(total)
         again = checked.pdf(directions, *at(samples))
         mismatches.append(np.mean(np.abs(again - pdf)[found] > 0.01 * pdf[found]) if found.any() else 0)
-    return ChiSquare(*_core.chi_square(seen, expected), float(np.mean(totals)), float(np.mean(mismatches)))
+    return ChiSquare(statistic, degrees, _core.chi_square_p_value(statistic, degrees), float(np.mean(totals)), float(np.mean(mismatches)))
 
 
 def _points(checked: CheckedStrategy, points: Any, u: NDArray[np.float64]) -> tuple[Any, Any]:
@@ -84,17 +85,27 @@ def _points(checked: CheckedStrategy, points: Any, u: NDArray[np.float64]) -> tu
     return np.zeros_like(normals), normals
 
 
-def _bins(directions: NDArray[np.float32]) -> NDArray[np.intp]:
+def _grid(directions: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rows and columns of the bins, with fractions."""
     import numpy as np
 
-    height = ((directions[:, 1].astype(float) + 1) / 2 * _HEIGHTS).astype(int).clip(0, _HEIGHTS - 1)
+    height = (directions[:, 1].astype(float) + 1) / 2 * _HEIGHTS
     turns = np.arctan2(directions[:, 2], directions[:, 0]).astype(float) / (2 * np.pi) % 1
-    bins: NDArray[np.intp] = height * _AZIMUTHS + (turns * _AZIMUTHS).astype(int).clip(0, _AZIMUTHS - 1)
+    return height.clip(0, _HEIGHTS * (1 - 1e-12)), (turns * _AZIMUTHS).clip(0, _AZIMUTHS * (1 - 1e-12))
+
+
+def _bins(directions: NDArray[np.float32]) -> NDArray[np.intp]:
+    height, azimuth = _grid(directions)
+    bins: NDArray[np.intp] = height.astype(int) * _AZIMUTHS + azimuth.astype(int)
     return bins
 
 
-def _integrals(pdf: Callable[[Any], Any], tolerance: float) -> NDArray[np.float64]:
-    """The integral of a pdf over each bin. Cells are divided into four until that changes less than the tolerance."""
+def _integrals(pdf: Callable[[Any], Any], found: NDArray[np.float32], samples: int) -> NDArray[np.float64]:
+    """The integral of a pdf over each bin. `found`: directions of some of as many samples.
+
+    Cells are divided into four until that changes little, and the numbers of samples in them do not tell of a part, such
+    as a small sun, that their points have missed; if those are many, the roughest are.
+    """
     import numpy as np
 
     def rule(row: Any, column: Any, halvings: int) -> Any:
@@ -109,21 +120,45 @@ def _integrals(pdf: Callable[[Any], Any], tolerance: float) -> NDArray[np.float6
         angle = 4 * np.pi / (_HEIGHTS * _AZIMUTHS) / (1 << halvings) ** 2
         return np.concatenate(parts).astype(float).reshape(-1, 16).mean(1) * angle
 
+    height, azimuth = _grid(found)
+
+    def counts(row: Any, column: Any, halvings: int) -> Any:
+        """The numbers of samples in cells."""
+        columns = _AZIMUTHS << halvings
+        places, numbers = np.unique(
+            (height * (1 << halvings)).astype(int) * columns + (azimuth * (1 << halvings)).astype(int), return_counts=True)
+        cells = row * columns + column
+        at = np.searchsorted(places, cells).clip(0, max(len(places) - 1, 0))
+        return np.where(places[at] == cells, numbers[at], 0) if len(places) else np.zeros(len(cells))
+
+    def beside(row: Any, column: Any, rough: Any, columns: int) -> Any:
+        """Whether cells have a rough neighbour, a sliver of which may be theirs."""
+        down, right = (a.ravel() for a in np.meshgrid([-1, 0, 1], [-1, 0, 1]))
+        around = (row[rough][:, None] + down) * columns + (column[rough][:, None] + right) % columns
+        return np.isin(row * columns + column, around)
+
     bins = np.arange(_HEIGHTS * _AZIMUTHS)
     row, column = np.divmod(bins, _AZIMUTHS)
-    found: NDArray[np.float64] = np.zeros(len(bins))
+    integrals: NDArray[np.float64] = np.zeros(len(bins))
     estimate = rule(row, column, 0)
     for halvings in range(1, _MOST_HALVINGS + 1):
         row, column = (2 * row[:, None] + [0, 0, 1, 1]).ravel(), (2 * column[:, None] + [0, 1, 0, 1]).ravel()
         bins = bins.repeat(4)
         fine = rule(row, column, halvings)
-        change = np.abs(fine.reshape(-1, 4).sum(1) - estimate).repeat(4)
-        # The first points may miss a feature.
-        rough = (change > tolerance) | (halvings < 3)
-        if halvings == _MOST_HALVINGS or 4 * np.count_nonzero(rough) > _MOST_CELLS:
+        change = np.abs(fine.reshape(-1, 4).sum(1) - estimate).repeat(4) * samples
+        surplus = np.abs(counts(row, column, halvings) - fine * samples)
+        missed = surplus > 1.5 * np.sqrt(fine * samples + 0.25)
+        rough = (change > 0.2) | missed
+        if halvings < 7:  # then the slivers are too small to count
+            rough |= beside(row, column, rough, _AZIMUTHS << halvings)
+        rough |= halvings < 3
+        if halvings == _MOST_HALVINGS:
             rough[:] = False
-        np.add.at(found, bins[~rough], fine[~rough])
+        elif 4 * np.count_nonzero(rough) > _MOST_CELLS:
+            most = np.where(rough, change + np.where(missed, surplus, 0), 0)
+            rough[np.argpartition(most, -_MOST_CELLS // 4)[: -_MOST_CELLS // 4]] = False
+        np.add.at(integrals, bins[~rough], fine[~rough])
         bins, row, column, estimate = bins[rough], row[rough], column[rough], fine[rough]
         if not len(bins):
             break
-    return found
+    return integrals

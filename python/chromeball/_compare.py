@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import html
 import math
@@ -10,10 +11,10 @@ import os
 import warnings
 from typing import TYPE_CHECKING, Any, Iterable, NamedTuple
 
-from . import _arrays, _core
+from . import _arrays, _core, _values
 from ._camera import Camera
 from ._chi_square import ChiSquare, chi_square
-from ._errors import InputError, RenderWarning
+from ._errors import InputError, RenderWarning, RunError
 from ._probe import Probe
 from ._render import Progress, ProbeLike, SceneLike, _callback, _plan
 from ._result import Result
@@ -50,10 +51,12 @@ class ComparisonRow(NamedTuple):
     seconds: float
     #: 1 / (relmse seconds)
     efficiency: float
-    #: The test of the pdf (chi_square()); NaN, 0 and NaN for strategies that have none.
+    #: The test of the pdf (chi_square()); NaN, and 0 degrees of freedom, for strategies that have none.
     chi_square: float
     degrees_of_freedom: int
     p_value: float
+    #: The fraction of samples whose pdf is not that of pdf().
+    mismatch: float
 
 
 class Comparison:
@@ -80,11 +83,21 @@ class Comparison:
         return "\n".join(line.rstrip() for line in lines)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a .csv."""
-        with open(path, "w", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(ComparisonRow._fields)
-            writer.writerows(self.rows)
+        """Writes a .csv, which is complete or as it was before."""
+        name = os.fspath(path)
+        if not name.endswith(".csv"):
+            raise InputError(f"save(): {name}: the name must end in .csv")
+        part = f"{name}.{os.getpid()}.tmp"
+        try:
+            with open(part, "w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file)
+                writer.writerow(ComparisonRow._fields)
+                writer.writerows(self.rows)
+            os.replace(part, name)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                os.remove(part)
+            raise RunError(f"save(): {name}: {error.strerror}") from None
 
     def _cells(self) -> list[list[str]]:
         return [["strategy", "samples", "RMSE %", "relMSE", "variance", "bias %", "z", "seconds", "efficiency", "pdf"]] + [
@@ -110,6 +123,8 @@ class Comparison:
 def _pdf_text(row: ComparisonRow) -> str:
     if not row.degrees_of_freedom:
         return "not tested"
+    if row.mismatch > 0.01:
+        return f"WRONG: pdf() is not sample()'s in {100 * row.mismatch:.3g}%"
     return f"{'WRONG' if row.p_value < _WRONG else 'right'}: p = {row.p_value:.2g}"
 
 
@@ -139,15 +154,13 @@ def compare(
     counts = _counts("samples", samples)
     if repeats < _core.MIN_REPEATS:
         raise InputError(f"compare(): repeats is {repeats}; it should be {_core.MIN_REPEATS} or more")
-    if isinstance(probe, (str, os.PathLike)):
-        probe = Probe(probe)
     callback = _callback(progress)
     study = _Renders(scene, probe, camera, settings, seed)
     names = study.add(strategies)
     for name in names:
         study.render(name, counts[0], 0)  # the first render of a strategy is slow
     if reference is None:
-        (total,) = _counts("reference_samples", [reference_samples or max(1024, 16 * counts[-1])])
+        (total,) = _counts("reference_samples", [max(1024, 16 * counts[-1]) if reference_samples is None else reference_samples])
         truth, squared_error = study.reference(total)
     else:
         truth, squared_error = _given(reference)
@@ -171,6 +184,11 @@ def compare(
             errors = _core.errors_of(images[name], truth, squared_error, study.row(name))
             rows[name, count] = _row(name, count, errors, seconds[name], tests[name])
             of_reference = max(of_reference, errors[4] / errors[0][0] if errors[0][0] > 0 else math.inf)
+    last = {name: rows[name, counts[-1]] for name in names}
+    rare = [name for name, row in last.items() if row.relmse + 1.96 * row.relmse_error >= _core.MOST_NOISE]
+    if rare:
+        warnings.warn(f"single bright samples may make up most of the error of {', '.join(rare)}: bias, efficiency and verdict are "
+                      "then those of a few repeats; give more samples or repeats", RenderWarning, stacklevel=2)
     if of_reference > 0.1:
         warnings.warn(f"the variance of the reference is {100 * of_reference:.0f}% of a relMSE; it has been subtracted, but "
                       "intervals are wide: give more reference_samples", RenderWarning, stacklevel=2)
@@ -184,7 +202,7 @@ class _Renders:
                  seed: int) -> None:
         self._scene, self._probe, self._camera = scene, probe, camera
         self._settings = settings
-        self._seed = seed
+        self._seed = _values.whole("seed", seed, 0, 2**64 - 1)
         self._strategies: dict[str, Any] = {}
         self._plans: dict[str, Any] = {}
         self._session: Any = None
@@ -251,10 +269,15 @@ class _Renders:
         strategy = self._strategies[name]
         if not isinstance(strategy, str):
             return chi_square(strategy, seed=self._seed)
-        if self._probe is None:
+        probe = self._probe
+        if isinstance(probe, (str, os.PathLike)):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", RenderWarning)  # the renders have them
+                probe = Probe(probe, self._settings.get("probe_mapping", "auto"))
+        if probe is None:
             return None
         try:
-            built = Strategy(name.split("+")[0], self._probe, mis=self._settings.get("mis") != "off")
+            built = Strategy(name.split("+")[0], probe, mis=self._settings.get("mis") != "off")
             return chi_square(built, seed=self._seed)
         except InputError:
             return None
@@ -266,7 +289,7 @@ def _row(name: str, count: int, errors: Any, seconds: float, test: ChiSquare | N
     return ComparisonRow._make([
         name, count, math.sqrt(relmse[0]) if relmse[0] >= 0 else math.nan, *relmse, *variance, *squared_bias, *bias,
         bias[0] / bias[1] if bias[1] > 0 else math.nan, seconds, 1 / work if work > 0 else math.nan,
-        *(test[:3] if test and test.degrees_of_freedom else (math.nan, 0, math.nan))])
+        *((*test[:3], test.mismatch) if test and test.degrees_of_freedom else (math.nan, 0, math.nan, math.nan))])
 
 
 def _counts(name: str, values: Iterable[int]) -> list[int]:
@@ -288,6 +311,8 @@ def _given(reference: Any) -> tuple[Any, Any]:
     squared_error = None
     if isinstance(reference, Result):
         squared_error = reference.layers.get("variance")
-        reference = reference.color
-    truth = _arrays.array("reference", reference, ("H", "W", 3), "float32")
+        reference = reference.layers.get("noisy", reference.color)  # what is denoised is biased
+    truth = _arrays.finite("reference", reference, ("H", "W", 3))
+    if (truth < 0).any():
+        raise InputError("reference: has negative radiance")
     return truth, squared_error if squared_error is not None and squared_error.shape == truth.shape else None

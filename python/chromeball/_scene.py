@@ -126,7 +126,7 @@ class Scene:
         """Adds a mesh of positions [V,3] in metres and triangles [T,3] of vertex numbers, counter-clockwise from the front;
         without triangles, positions are taken in threes.
 
-        normals [V,3]: None is flat. uvs [V,2]: v down. colors [V,3] or [V,4]: linear, from 0 to 1 or as bytes, times the base
+        normals [V,3]: None is flat. uvs [V,2]: v down. colors [V,3] or [V,4]: linear, from 0 to 1, or as uint8 or uint16, times the base
         colour. transform [4,4]: of column vectors. Returns the mesh's number, for add_instance(). Arrays are copied.
         """
         name = _values.text("name", name)

@@ -17,6 +17,7 @@
 #include "plan.h"
 #include "study.h"
 #include "study/result_tables.h"
+#include "study/results.h"
 
 namespace chromeball::python {
 namespace {
@@ -108,6 +109,9 @@ void bindStudy(nb::module_& m) {
         return positiveText({mean, error});
       },
       nb::arg("mean"), nb::arg("standard_error"), "The same for a mean of positive numbers.");
+  m.attr("MOST_NOISE") = kMaxNoiseOfPairs;
+  m.def("chi_square_p_value", chiSquarePValue, nb::arg("statistic"), nb::arg("degrees_of_freedom"),
+        "The probability of such a statistic.");
   m.def("chi_square", chiSquareOf, nb::arg("observed"), nb::arg("expected"),
         "Statistic, degrees of freedom and p-value; cells of few expected counts are pooled.");
 }

@@ -61,7 +61,7 @@ def test_arrays_are_copied(camera, small):
         (dict(uvs=SQUARE), r"uvs: has the shape \[4, 3\]; it should be \[V,2\]"),
         (dict(colors=-np.ones((4, 3))), r"colors\[0\]: \[-1.0, -1.0, -1.0\] should be from 0 to 1"),
         (dict(colors=2 * np.ones((4, 4))), r"colors\[0\]: .* should be from 0 to 1"),
-        (dict(colors=np.full((4, 3), 128)), r"colors\[0\]: \[128, 128, 128\] should be from 0 to 1, or be bytes"),
+        (dict(colors=np.full((4, 3), 128)), r"colors\[0\]: \[128, 128, 128\] should be from 0 to 1, or be uint8"),
         (dict(colors=np.full((4, 3), np.nan)), r"colors\[0\]"),
         (dict(colors=np.full((4, 3), 0.5 + 0.1j)), r"colors: has the type complex128"),
         (dict(colors=[["1", "0", "0"]] * 4), r"colors: has the type <U1"),

@@ -4,6 +4,8 @@
 import builtins
 import csv
 import math
+import resource
+import signal
 import subprocess
 
 import numpy as np
@@ -230,3 +232,122 @@ def test_wrong_comparisons_are_refused(arguments, expected, scene):
 def test_wrong_tests_are_refused(call, expected):
     with pytest.raises(cb.InputError, match=expected):
         call(Uniform(sunny()))
+
+
+@pytest.fixture
+def small():
+    return square_scene(), cb.Probe(sky())
+
+
+def test_a_denoised_reference_is_its_noisy_image(small):
+    scene, probe = small
+    settings = dict(size=(16, 12), samples=[2], repeats=4)
+    noisy = cb.render(scene, probe, size=(16, 12), samples=64, layers=["variance"])
+    denoised = cb.render(scene, probe, size=(16, 12), samples=64, layers=["variance"], denoise=True)
+    of = [cb.compare(scene, probe, ["importance"], reference=r, **settings).rows[0].relmse for r in (noisy, denoised)]
+    assert of[0] == pytest.approx(of[1], rel=1e-6)
+
+
+@pytest.mark.parametrize("reference, expected", [
+    (np.full((12, 16, 3), np.nan), "reference.*not finite"), (np.full((12, 16, 3), -1.0), "negative")], ids=["nan", "negative"])
+def test_wrong_references_are_refused(reference, expected, small):
+    with pytest.raises(cb.InputError, match=expected):
+        cb.compare(*small, ["importance"], reference=reference, size=(16, 12), samples=[1], repeats=3)
+
+
+@pytest.mark.parametrize("seed", [-1, 2**64, 1.5])
+def test_wrong_seeds_are_refused(seed, small):
+    with pytest.raises(cb.InputError, match="seed"):
+        cb.compare(*small, ["importance"], seed=seed, size=(16, 12), samples=[1], repeats=3, reference_samples=32)
+
+
+def test_a_file_is_complete_or_as_it_was(small, tmp_path):
+    comparison = cb.compare(*small, ["importance"], size=(16, 12), samples=[1], repeats=3, reference_samples=32)
+    with pytest.raises(cb.InputError, match="must end in .csv"):
+        comparison.save(tmp_path / "x.exr")
+    comparison.save(tmp_path / "x.csv")
+    before = (tmp_path / "x.csv").read_bytes()
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20, limits[1]))
+    try:
+        with pytest.raises(cb.RunError, match="x.csv"):
+            comparison.save(tmp_path / "x.csv")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, handler)
+    assert (tmp_path / "x.csv").read_bytes() == before
+    assert [f.name for f in tmp_path.iterdir()] == ["x.csv"]
+
+
+def sunny(height=256):
+    """A grainy sky with a sun of a few texels, and of half the light."""
+    texels = 0.2 * np.random.default_rng(1).uniform(0.5, 1.5, (height, 2 * height, 1)).repeat(3, 2).astype(np.float32)
+    texels[60:62, 101:103] = 0.2 * texels[:, :, 0].size / 4
+    return cb.Probe(texels)
+
+
+@pytest.mark.parametrize("mis", [True, False])
+def test_small_suns_of_a_right_pdf_are_found(mis):
+    tests = [cb.chi_square(cb.Strategy("importance", sunny(), mis=mis), seed=seed) for seed in range(3)]
+    assert all(abs(test.total - 1) < 2e-4 for test in tests)
+    assert min(test.p_value for test in tests) > 1e-4
+
+
+def test_each_point_has_its_own_number_of_samples():
+    """Two bins with equal chances at each of ten points: ten degrees of freedom."""
+
+    class TwoBins:
+        turns = (np.arange(2) + 0.5) * 2 * np.pi / 48
+
+        def sample(self, points, u):
+            turn = (np.floor(2 * u[:, 0]) + u[:, 0] * 2 % 1) * 2 * np.pi / 48
+            y = u[:, 1] / 12
+            r = np.sqrt(1 - y * y)
+            directions = np.stack([r * np.cos(turn), y, r * np.sin(turn)], 1)
+            return directions, np.ones((len(u), 3)), self.pdf(directions)
+
+        def pdf(self, directions):
+            turn = np.arctan2(directions[:, 2], directions[:, 0]) / (2 * np.pi) % 1
+            inside = (turn < 2 / 48) & (directions[:, 1] > 0) & (directions[:, 1] < 1 / 12)
+            return np.where(inside, 1 / (2 * 4 * np.pi / (24 * 48)), 0)
+
+    test = cb.chi_square(TwoBins(), cb.Points(None, np.repeat([[0.0, 1, 0]], 10, 0)), samples=1000)
+    assert test.degrees_of_freedom == 10
+    assert test.p_value > 1e-4
+
+
+def test_a_pdf_that_is_not_that_of_samples_is_wrong_in_the_table(small):
+    class Twice(Uniform):
+        def sample(self, points, u):
+            directions, radiance, pdf = super().sample(points, u)
+            return directions, radiance, 2 * pdf
+
+    scene, probe = small
+    comparison = cb.compare(scene, probe, [Twice(probe)], size=(16, 12), samples=[1], repeats=3, reference_samples=32)
+    assert comparison.rows[0].mismatch == 1 and "WRONG: pdf() is not sample()'s in 100%" in comparison.table()
+
+
+def write_pfm(path, texels):
+    path.write_bytes(b"PF\n%d %d\n-1.0\n" % texels.shape[1::-1] + texels[::-1].astype("<f4").tobytes())
+
+
+def test_the_scenes_mapping_holds_for_a_probe_by_its_path(tmp_path):
+    texels = np.zeros((64, 64, 3), np.float32)
+    y, x = (np.mgrid[0:64, 0:64] + 0.5) / 32 - 1
+    texels[x * x + y * y < 1] = (1, 2, 3)
+    texels[(x * x + y * y < 1) & (y < 0)] = 9
+    scene = square_scene()
+    for mapping in ("angular", "mirror-ball"):
+        write_pfm(tmp_path / "p.pfm", texels)
+        arguments = dict(size=(8, 6), samples=[1], repeats=3, reference_samples=256)
+        by_path = cb.compare(scene, str(tmp_path / "p.pfm"), ["uniform"], probe_mapping=mapping, **arguments)
+        in_memory = cb.compare(scene, cb.Probe(texels, mapping), ["uniform"], **arguments)
+        np.testing.assert_allclose(by_path.reference, in_memory.reference, rtol=1e-5)
+
+
+def test_a_few_bright_samples_are_warned_of(small):
+    scene, _ = small
+    with pytest.warns(cb.RenderWarning, match="single bright samples"):
+        cb.compare(scene, sunny(), ["uniform"], size=(16, 12), samples=[1], repeats=3, reference_samples=32)
+

@@ -420,3 +420,15 @@ def test_many_renders_leak_nothing(camera):
     # One image, its film and the probe's table take 0.6 MB a render.
     assert resident() - before < 10e6
     assert abs(sys.getrefcount(None) - references) < 50
+
+
+@pytest.mark.parametrize("matrix, size, expected", [
+    (np.transpose([[10, 0, 4], [0, 10, 3], [0, 0, 1]]), (8, 6), r"should be \[\[f, 0, cx\]"),
+    (2 * np.array([[10, 0, 4], [0, 10, 3], [0, 0, 1]]), (8, 6), r"should be \[\[f, 0, cx\]"),
+    ([[10, 0, 4], [5, 10, 3], [0, 0, 1]], (8, 6), r"should be \[\[f, 0, cx\]"),
+    ([[10, np.nan, 4], [0, 10, 3], [0, 0, 1]], (8, 6), "finite"),
+    ([[10, 0, 4], [0, 10, 3], [0, 0, 1]], (8, 0), "size: 0 should be 1"),
+    ([[10, 0, 4], [0, 10, 3], [0, 0, 1]], (-8, 6), "size: -8 should be 1")], ids=str)
+def test_wrong_intrinsics_are_refused(matrix, size, expected):
+    with pytest.raises(cb.InputError, match=expected):
+        cb.Camera.from_intrinsics(matrix, size)

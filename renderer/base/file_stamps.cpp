@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/file_stamps.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <system_error>
 
@@ -12,6 +14,10 @@ FileStamps::Stamp::Stamp(const std::string& file) {
   path = std::filesystem::canonical(file, ignored);
   size = std::filesystem::file_size(file, ignored);
   written = std::filesystem::last_write_time(file, ignored);
+  if (struct stat status{}; ::stat(file.c_str(), &status) == 0) {
+    node = status.st_ino;
+    changed = status.st_ctim.tv_sec, nanoseconds = status.st_ctim.tv_nsec;
+  }
 }
 
 FileStamps::Time FileStamps::now() { return Time::clock::now(); }

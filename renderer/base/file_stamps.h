@@ -19,7 +19,8 @@ class FileStamps {
   // Files that were read from `begin` on; those that were written meanwhile count as changed.
   void add(const std::vector<std::string>& files, Time begin);
 
-  // By path, size and time of the last write, without reading it. False if it was not added.
+  // By path, size, node and times of the last changes, without reading it. False if it was not
+  // added.
   bool isCurrent(const std::string& file) const;
   bool areCurrent() const;  // all
 
@@ -28,6 +29,9 @@ class FileStamps {
     std::filesystem::path path;  // without links
     uintmax_t size;
     Time written;
+    uint64_t node = 0;  // which file has this path
+    int64_t changed = 0,
+            nanoseconds = 0;  // of its contents or its attributes, which nobody can set
 
     explicit Stamp(const std::string& file);
     bool operator==(const Stamp&) const = default;

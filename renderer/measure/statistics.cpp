@@ -123,6 +123,12 @@ Agreement agreement(std::span<const Image> a, std::span<const Image> b) {
   return result;
 }
 
+double chiSquarePValue(double statistic, int degreesOfFreedom) {
+  if (!std::isfinite(statistic)) return 0;
+  if (degreesOfFreedom < 1) return 1;
+  return cdf(complement(boost::math::chi_squared(degreesOfFreedom), statistic));
+}
+
 ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double> expected,
                         double minimum) {
   assert(observed.size() == expected.size());
@@ -147,11 +153,7 @@ ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double
     result.statistic = std::numeric_limits<double>::infinity();  // samples where none are expected
   }
   result.degreesOfFreedom = std::max(cells - 1, 0);
-  if (std::isinf(result.statistic) || std::isnan(result.statistic))
-    result.pValue = 0;
-  else if (result.degreesOfFreedom > 0)
-    result.pValue =
-        cdf(complement(boost::math::chi_squared(result.degreesOfFreedom), result.statistic));
+  result.pValue = chiSquarePValue(result.statistic, result.degreesOfFreedom);
   return result;
 }
 

@@ -80,9 +80,12 @@ Agreement agreement(std::span<const Image> a, std::span<const Image> b);
 struct ChiSquare {
   double statistic = 0;
   int degreesOfFreedom = 0;
-  double pValue = 1;  // probability of such a statistic if the distribution is as expected
+  double pValue = 1;  // chiSquarePValue()
 };
 ChiSquare chiSquareTest(std::span<const double> observed, std::span<const double> expected,
                         double minimum = 5);
+// The probability of such a statistic if the distribution is as expected; 1 without a degree of
+// freedom.
+double chiSquarePValue(double statistic, int degreesOfFreedom);
 
 }  // namespace chromeball

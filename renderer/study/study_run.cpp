@@ -171,12 +171,17 @@ Reference meanOfParts(const std::vector<Image>& parts) {
 Reference readReference(const std::string& path, int width, int height, Messages* messages) {
   const ImageFile file = readImageFile(path);
   if (messages) messages->insert(messages->end(), file.messages.begin(), file.messages.end());
-  std::optional<Image> color = findColor(file);
+  std::optional<Image> color = layerOf(file, "noisy", path);
+  const bool isDenoised = color.has_value();
+  if (!color) color = findColor(file);
   if (!color) throwInput("reference: {}: has no colour", path);
   color = inDisplayWindow(*std::move(color), file.placement, path);
   if (color->width != width || color->height != height)
     throwInput("reference: {} is {} x {}, but the renders are {} x {}; try a size of {}x{}", path,
                color->width, color->height, width, height, color->width, color->height);
+  if (isDenoised && messages)
+    addNote(*messages, "reference: {} is denoised: its layer `noisy`, which is unbiased, is taken",
+            path);
   const std::optional<Image> variance = layerOf(file, "variance", path);
   return {*color, variance && variance->channels == 3 ? *variance : Image()};
 }

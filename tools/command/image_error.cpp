@@ -68,6 +68,10 @@ struct Side {
   explicit Side(const std::string& path) {
     ImageFile file = openImageFile(path);
     variance = layerOf(file, "variance", path);
+    if (variance && layerOf(file, "noisy", path)) {
+      variance.reset();
+      warn(path + ": is denoised, and `variance` is that of its layer `noisy`: not used");
+    }
     isDisplayReferred = file.integers;
     color = colorOf(std::move(file), path);
   }
