@@ -57,7 +57,7 @@ def chi_square(strategy: Any, points: Any = None, *, samples: int = 100_000, see
         counts = np.bincount(_bins(directions[found]), minlength=len(integrals))
         total = integrals.sum()
         # Each point has a number of samples of its own.
-        of_point = _core.chi_square([*counts, np.count_nonzero(~found)], [*(integrals * samples), max(0, 1 - total) * samples])
+        of_point = _core.chi_square([*counts.astype(float), float(np.count_nonzero(~found))], [*(integrals * samples), max(0, 1 - total) * samples])
         statistic, degrees = statistic + of_point[0], degrees + of_point[1]
         totals.append(total)
         again = checked.pdf(directions, *at(samples))

@@ -198,7 +198,7 @@ def compare(
 class _Renders:
     """Renders of one scene by many strategies, which is loaded once."""
 
-    def __init__(self, scene: SceneLike, probe: Probe | None, camera: Camera | None, settings: dict[str, Any],
+    def __init__(self, scene: SceneLike, probe: ProbeLike, camera: Camera | None, settings: dict[str, Any],
                  seed: int) -> None:
         self._scene, self._probe, self._camera = scene, probe, camera
         self._settings = settings
