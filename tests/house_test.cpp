@@ -106,7 +106,7 @@ const std::map<std::string, std::vector<std::string>> kIncludedBy = {
     {"Eigen/",
      {"renderer/math/dense_", "renderer/math/dense_solvers.cpp", "renderer/lighting/fit/",
       "renderer/scene/solve/", "renderer/relight/transfer/clustered_pca.cpp"}},
-    {"boost/", {"renderer/measure/"}},
+    {"boost/", {"renderer/measure/", "renderer/probe/cube_faces.cpp"}},
     {"tbb/", {"renderer/base/parallel.cpp"}},
     {"CLI/",
      {"tools/command/command.cpp", "tools/command/command_line.cpp", "tools/command/help.h"}},

@@ -112,13 +112,16 @@ def _integrals(pdf: Callable[[Any], Any], found: NDArray[np.float32], samples: i
         """The integrals over cells, by the 4 x 4 points in the middles of their parts."""
         n = 4 << halvings
         i, j = (np.arange(16) // 4, np.arange(16) % 4)
-        y = ((4 * row[:, None] + i + 0.5) / (n * _HEIGHTS) * 2 - 1).ravel()
-        turn = ((4 * column[:, None] + j + 0.5) / (n * _AZIMUTHS) * 2 * np.pi).ravel()
-        r = np.sqrt(1 - y * y)
-        directions = np.stack([r * np.cos(turn), y, r * np.sin(turn)], -1).astype(np.float32)
+        # Even steps of the polar angle: pdfs of lat-long maps may have a pole, 1 / sin, there.
+        low, high = (np.arccos(np.clip(2 * (row[:, None] + k) / (_HEIGHTS << halvings) - 1, -1, 1)) for k in (0, 1))
+        polar = low + (high - low) * (i + 0.5) / 4
+        weights = np.sin(polar) / np.sin(polar).sum(1, keepdims=True)
+        turn = (4 * column[:, None] + j + 0.5) / (n * _AZIMUTHS) * 2 * np.pi
+        x, y, z = np.sin(polar) * np.cos(turn), np.cos(polar), np.sin(polar) * np.sin(turn)
+        directions = np.stack([x, y, z], -1).reshape(-1, 3).astype(np.float32)
         parts = [pdf(directions[k : k + _BATCH]) for k in range(0, len(directions), _BATCH)]
         angle = 4 * np.pi / (_HEIGHTS * _AZIMUTHS) / (1 << halvings) ** 2
-        return np.concatenate(parts).astype(float).reshape(-1, 16).mean(1) * angle
+        return (np.concatenate(parts).astype(float).reshape(-1, 16) * weights).sum(1) * angle
 
     height, azimuth = _grid(found)
 

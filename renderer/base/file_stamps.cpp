@@ -4,40 +4,36 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <system_error>
 
 namespace chromeball {
 
-// What cannot be known of a missing file has one value.
-FileStamps::Stamp::Stamp(const std::string& file) {
-  std::error_code ignored;
-  path = std::filesystem::canonical(file, ignored);
-  size = std::filesystem::file_size(file, ignored);
-  written = std::filesystem::last_write_time(file, ignored);
-  if (struct stat status{}; ::stat(file.c_str(), &status) == 0) {
-    node = status.st_ino;
-    changed = status.st_ctim.tv_sec, nanoseconds = status.st_ctim.tv_nsec;
-  }
+FileStamps::Stamp FileStamps::stampOf(const std::string& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return {};
+  return {status.st_dev, status.st_ino,
+          std::chrono::seconds(status.st_ctim.tv_sec) + Time(status.st_ctim.tv_nsec)};
 }
 
-FileStamps::Time FileStamps::now() { return Time::clock::now(); }
+FileStamps::Time FileStamps::now() {
+  return std::chrono::duration_cast<Time>(std::chrono::system_clock::now().time_since_epoch());
+}
 
 void FileStamps::add(const std::vector<std::string>& files, Time begin) {
   const Time end = now();
   for (const std::string& file : files) {
-    const Stamp stamp(file);
-    const bool isWritten = stamp.written > begin && stamp.written <= end;
+    const Stamp stamp = stampOf(file);
+    const bool isWritten = stamp.changed > begin && stamp.changed <= end;
     stamps_[file] = isWritten ? std::nullopt : std::optional(stamp);
   }
 }
 
 bool FileStamps::isCurrent(const std::string& file) const {
   const auto found = stamps_.find(file);
-  return found != stamps_.end() && found->second == Stamp(file);
+  return found != stamps_.end() && found->second == stampOf(file);
 }
 
 bool FileStamps::areCurrent() const {
-  return std::ranges::all_of(stamps_, [](const auto& s) { return s.second == Stamp(s.first); });
+  return std::ranges::all_of(stamps_, [](const auto& s) { return s.second == stampOf(s.first); });
 }
 
 }  // namespace chromeball

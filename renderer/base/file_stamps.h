@@ -2,8 +2,8 @@
 // Tells whether files have changed since they were read.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,29 +13,25 @@ namespace chromeball {
 
 class FileStamps {
  public:
-  using Time = std::filesystem::file_time_type;
+  using Time = std::chrono::nanoseconds;  // since 1970, by the clock that dates files
   static Time now();
 
   // Files that were read from `begin` on; those that were written meanwhile count as changed.
   void add(const std::vector<std::string>& files, Time begin);
 
-  // By path, size, node and times of the last changes, without reading it. False if it was not
-  // added.
+  // By its node and the time of its last change, without reading it. False if it was not added.
   bool isCurrent(const std::string& file) const;
   bool areCurrent() const;  // all
 
  private:
+  // Of a file without links; that of a missing one is {}.
   struct Stamp {
-    std::filesystem::path path;  // without links
-    uintmax_t size;
-    Time written;
-    uint64_t node = 0;  // which file has this path
-    int64_t changed = 0,
-            nanoseconds = 0;  // of its contents or its attributes, which nobody can set
+    uint64_t device = 0, node = 0;
+    Time changed{};  // its contents or attributes; no program can set this time
 
-    explicit Stamp(const std::string& file);
     bool operator==(const Stamp&) const = default;
   };
+  static Stamp stampOf(const std::string& file);
 
   std::map<std::string, std::optional<Stamp>> stamps_;  // nullopt: counts as changed
 };

@@ -20,13 +20,12 @@ bool wants(const D& d, std::string_view layer) {
          std::ranges::any_of(d.settings.aovs, [&](Aov a) { return aovInfo(a).name == layer; });
 }
 bool approximates(const D& d) { return usesEnvironment(d.settings.integrator); }
-bool hasPlate(const D& d) { return d.hasPlate(); }
 
 // Features that may be in a description.
 constexpr Feature kComposite{"a composite", "", [](const D& d) { return d.composite.has_value(); }};
-constexpr Feature kPlate{"a composite with a plate", "", hasPlate};
+constexpr Feature kPlate{"a composite with a plate", "", [](const D& d) { return d.hasPlate(); }};
 constexpr Feature kShadowCatcher{"a shadow catcher", "shadow-catcher",
-                                 [](const D& d) { return d.composite && !hasPlate(d); }};
+                                 [](const D& d) { return d.composite && !d.hasPlate(); }};
 constexpr Feature kTwoPass{"a reference of two passes", "two-pass", [](const D& d) {
                              return d.composite ? d.composite->passes == Passes::Two
                                                 : d.origins.has("two-pass");
@@ -111,7 +110,7 @@ constexpr Feature kAutoExposure{"an exposure that the picture decides", "output.
                                 [](const D& d) { return d.output.choosesExposure; }};
 
 // Features that may be missing.
-constexpr Feature kNoPlate{"no plate", "", [](const D& d) { return !hasPlate(d); }};
+constexpr Feature kNoPlate{"no plate", "", [](const D& d) { return !d.hasPlate(); }};
 constexpr Feature kNoGround{"no ground of a composite", "", [](const D& d) {
                               return !d.composite || d.composite->ground !=
                                                          CompositeDescription::GroundPlane::Always;

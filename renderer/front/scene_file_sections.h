@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables [[light]] of a scene file.
+// Readers of the sections and tables of a scene file.
 #pragma once
 
 #include "front/scene_file.h"
@@ -12,7 +12,7 @@
 
 namespace chromeball {
 
-// Reads one table: a lamp, or the lamps of a list (lighting/export/light_file.h), whose path is
+// [[light]]: reads one table, a lamp, or the lamps of a list (lighting/export/light_file.h), whose path is
 // added to `files`. Throws InputError.
 std::vector<Lamp> readLamps(const Entry& entry, std::vector<std::string>& files);
 

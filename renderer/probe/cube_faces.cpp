@@ -2,6 +2,7 @@
 #include "probe/cube_faces.h"
 
 #include <fmt/format.h>
+#include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,7 @@ double unlikeness(double a, double b) {
 // scatter, and the mean over a run of rows, because noise may be correlated from row to row.
 double axesThatFit(const Image& strip) {
   constexpr int kRuns = 32;  // at most, along an edge
+  constexpr double kByChance = 1e-4;
   const int n = strip.height, runs = std::min(n, kRuns);
   const auto atSeam = [&](int left, int right, int y) {
     return unlikeness(lightAt(strip, left * n + n - 1, y), lightAt(strip, right * n, y));
@@ -51,9 +53,8 @@ double axesThatFit(const Image& strip) {
     }
   const double count = 2.0 * runs, degreesOfFreedom = count - 1;
   const double variance = std::max(sumOfSquares - sum * sum / count, 0.0) / degreesOfFreedom;
-  // Student's quantile from the normal one, z, to first order (Cornish and Fisher 1938).
-  constexpr double z = 3.719;
-  const double quantile = z + (z * z * z + z) / (4 * degreesOfFreedom);
+  const double quantile =
+      boost::math::quantile(complement(boost::math::students_t(degreesOfFreedom), kByChance));
   return sum == 0 ? 0 : sum / (quantile * std::sqrt(count * variance));
 }
 
