@@ -12,8 +12,8 @@
 
 namespace chromeball {
 
-// [[light]]: reads one table, a lamp, or the lamps of a list (lighting/export/light_file.h), whose path is
-// added to `files`. Throws InputError.
+// [[light]]: reads one table, a lamp, or the lamps of a list (lighting/export/light_file.h), whose
+// path is added to `files`. Throws InputError.
 std::vector<Lamp> readLamps(const Entry& entry, std::vector<std::string>& files);
 
 // The tables [[source]] of a scene file: polygons of the probe that become sources of their own.
