@@ -142,8 +142,9 @@ TEST_F(SlowStarved, FoldersAndFilesWithoutPermission) {
 TEST_F(SlowStarved, SigintAndSigtermSaveTheImageSoFar) {
   for (int signal : {SIGINT, SIGTERM}) {
     const TemporaryFolder out;
-    const Words all = words(out / "a.exr", {"--samples", "100000000", "--time", "60", "--progress",
-                                            "--stats", out / "a.json", "--aov", "samples"});
+    const Words all =
+        words(out / "a.exr", {"--samples", "100000000", "--time", "60", "--progress", "--size",
+                              "16x16", "--stats", out / "a.json", "--aov", "samples"});
     const CommandResult result = runExecutable(all, "  2%", signal);  // after a second
     EXPECT_EQ(result.status, 130) << result.error;
     EXPECT_EQ(out.files(), (Words{"a.exr", "a.json"}));

@@ -224,7 +224,7 @@ std::optional<Chromaticities> chromaticitiesOf(const Imf::Header& header) {
 
 void setMetadata(const Metadata& metadata, Imf::Header& header) {
   for (const auto& [name, contents] : metadata) {
-    if (saysHowItIsStored(name)) continue;
+    if (saysHowItIsStored(name) || name == kCaptureDate) continue;
     if (const auto* matrix = std::get_if<Matrix44>(&contents)) {
       Imath::M44f m;
       std::copy(matrix->begin(), matrix->end(), m.getValue());

@@ -17,6 +17,9 @@ std::string exrVersion();  // of the OpenEXR that this was built with
 // file; without the ones that say how the image is stored.
 Metadata metadataOf(const Imf::Header& header);
 std::optional<Chromaticities> chromaticitiesOf(const Imf::Header& header);
+
+// All but `capDate`: the date of the file that an image is made of is not that of the file written.
+inline constexpr const char* kCaptureDate = "capDate";
 void setMetadata(const Metadata& metadata, Imf::Header& header);
 
 // Checks the headers of an OpenEXR file before the library reads them.

@@ -78,8 +78,7 @@ Imf::Header headerOf(const ExrLayout& layout) {
   header.compression() = layout.separateRows ? Imf::ZIPS_COMPRESSION : Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = 4;
   setMetadata(layout.metadata, header);
-  header.erase("capDate");  // of the file that an image is made of, of any type
-  header.insert("capDate", Imf::StringAttribute(localTime()));
+  header.insert(kCaptureDate, Imf::StringAttribute(localTime()));
   for (const std::string& channel : layout.channels)
     header.channels().insert(channel, Imf::Channel(layout.halves ? Imf::HALF : Imf::FLOAT));
   return header;
