@@ -361,9 +361,10 @@ TEST(Denoise, RegressionIsExactForAffineColors) {
     flat.variances.push_back(makePlane(kWidth, kHeight, [](int, int) { return 1.0f; }));
   }
   TileWeights weights;
-  weights.compute(flat, 32, 0);
+  const PixelArea tile{32, 0, TileWeights::kWidth, TileWeights::kHeight};
+  weights.compute(flat, tile, {});
   Predictions predictions(kWidth, kHeight);
-  addRegressions(weights, 1, color, features, 32, 0, predictions);
+  addRegressions(weights, 1, color, features, tile, {}, predictions);
   for (int y = 0; y < TileWeights::kHeight; ++y)
     for (int x = 32; x < 64; ++x)
       for (size_t c = 0; c < 3; ++c)
@@ -381,8 +382,8 @@ TEST(Denoise, WeightsAreThoseOfTheDefinition) {
         makePlane(kWidth, kHeight, [](int x, int y) { return 0.05f + 0.001f * float(x + y); }));
   }
   TileWeights weights;
-  const int left = 64, top = 32;  // a tile that the image's edge cuts
-  weights.compute(guide, left, top);
+  const int left = 64, top = 32;
+  weights.compute(guide, {left, top, kWidth - left, kHeight - top}, {});
   forNeighbours([&](size_t neighbour, int dx, int dy) {
     for (const auto& [x, y] : {std::pair{64, 32}, {70, 40}, {74, 49}, {75, 40}, {70, 50}}) {
       double sum = 0;

@@ -53,8 +53,8 @@ HalfPlanes halvesOf(const HalvedImage& image, float scale) {
   return halves;
 }
 
-Component componentOf(HalfPlanes halves) {
-  Component component{std::move(halves), {}};
+Component componentOf(HalfPlanes halves, Plane used) {
+  Component component{std::move(halves), {}, std::move(used)};
   for (size_t c = 0; c < 3; ++c)
     component.variance[c] = varianceOf(component.halves[0][c], component.halves[1][c]);
   return component;
@@ -175,8 +175,10 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
     const RgbPlanes noise = noiseOf(part, scale);
     HalfPlanes halves = halvesOf(part, scale);
     const Plane squaredBias = limitFireflies(halves);
+    const Plane used = makePlaneLike(
+        squaredBias, [&](int x, int y) { return isEmpty(input, part, x, y) ? 0.0f : 1.0f; });
     const Selection found = denoise(
-        componentOf(std::move(halves)), features,
+        componentOf(std::move(halves), used), features,
         [&](double fraction) { progress((before + fraction) / count); }, stop);
     if (stop) return std::nullopt;
     const int width = part.mean.width, height = part.mean.height;
@@ -184,7 +186,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
     DenoisedPart& result = results.back();
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        if (isEmpty(input, part, x, y)) continue;
+        if (used.at(x, y) == 0) continue;
         for (int c = 0; c < 3; ++c) {
           // The light of fireflies is missing; without the limit their noise would be there.
           const float known = std::max(found.error[size_t(c)].at(x, y), 0.0f);
@@ -217,7 +219,7 @@ Denoised sumOf(const std::vector<DenoisedPart>& parts) {
 }
 
 double denoiseBytes(int width, int height, int parts) {
-  const double planes = 158 + 6 * parts;  // that exist at the same time, at most
+  const double planes = 159 + 6 * parts;  // that exist at the same time, at most
   return planes * sizeof(float) * (width + 2.0 * Plane::kMargin) * (height + 2.0 * Plane::kMargin);
 }
 

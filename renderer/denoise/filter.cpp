@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kWidth = TileWeights::kWidth, kHeight = TileWeights::kHeight;
 
-// Calls visit(left, top) for all tiles. Tiles that run at the same time write to different pixels
+// Calls visit(tile) for all tiles. Tiles that run at the same time write to different pixels
 // (addRegressions()), and each pixel is written in the same order, whatever the number of threads.
 template <class Visit>
 void forTiles(int width, int height, const std::atomic<bool>& stop, const Visit& visit) {
@@ -28,7 +28,9 @@ void forTiles(int width, int height, const std::atomic<bool>& stop, const Visit&
     const int rows = along(height, kHeight, py, kRowPhases);
     parallelFor(0, columns * rows, [&](int i) {
       if (stop) return;
-      visit((i % columns * kColumnPhases + px) * kWidth, (i / columns * kRowPhases + py) * kHeight);
+      const int left = (i % columns * kColumnPhases + px) * kWidth;
+      const int top = (i / columns * kRowPhases + py) * kHeight;
+      visit(PixelArea{left, top, std::min(kWidth, width - left), std::min(kHeight, height - top)});
     });
   }
 }
@@ -59,35 +61,42 @@ void average(const TileWeights& weights, int power, size_t index, std::span<cons
   for (size_t c = 0; c < channels.size(); ++c) store8(means[c].row(y) + x, sums[c] / weightSum);
 }
 
-void averageTile(const TileWeights& weights, int power, std::span<const Plane> channels, int left,
-                 int top, std::span<Plane> means) {
-  const int bottom = std::min(top + kHeight, channels[0].height());
-  const int right = std::min(left + kWidth, channels[0].width());
-  for (int y = top; y < bottom; ++y)
-    for (int x = left; x < right; x += kLanes)
-      average(weights, power, size_t((y - top) * kWidth + x - left), channels, x, y, means);
+void averageArea(const TileWeights& weights, int power, std::span<const Plane> channels,
+                 const PixelArea& area, std::span<Plane> means) {
+  for (int y = 0; y < area.height; ++y)
+    for (int x = 0; x < area.width; x += kLanes)
+      average(weights, power, size_t(y * kWidth + x), channels, area.left + x, area.top + y, means);
 }
 
-// Whether the noise of all pixels of the tile is far below their size.
-bool isClean(const NoisyPlanes& planes, int left, int top, int right, int bottom) {
-  constexpr float kNegligible = 0.002f;  // relative
-  for (int y = top; y < bottom; ++y)
-    for (int x = left; x < right; ++x) {
-      float size = 0, variance = 0;
-      for (size_t c = 0; c < planes.values.size(); ++c) {
-        size += planes.values[c].at(x, y) * planes.values[c].at(x, y);
-        variance += planes.variances[c].at(x, y);
+// The least area of a tile that has all pixels with isWanted(x, y).
+template <class IsWanted>
+PixelArea boundsOf(const PixelArea& tile, const IsWanted& isWanted) {
+  int left = tile.right(), right = tile.left, top = tile.bottom(), bottom = tile.top;
+  for (int y = tile.top; y < tile.bottom(); ++y)
+    for (int x = tile.left; x < tile.right(); ++x)
+      if (isWanted(x, y)) {
+        left = std::min(left, x), right = std::max(right, x + 1);
+        top = std::min(top, y), bottom = y + 1;
       }
-      if (variance > kNegligible * kNegligible * size) return false;
-    }
-  return true;
+  return {left, top, right - left, bottom - top};
 }
 
-void copyTile(const std::vector<Plane>& from, int left, int top, int right, int bottom,
-              std::vector<Plane>& to) {
+// Whether the noise of a pixel is far below its size.
+bool isClean(const NoisyPlanes& planes, int x, int y) {
+  constexpr float kNegligible = 0.002f;  // relative
+  float size = 0, variance = 0;
+  for (size_t c = 0; c < planes.values.size(); ++c) {
+    size += planes.values[c].at(x, y) * planes.values[c].at(x, y);
+    variance += planes.variances[c].at(x, y);
+  }
+  return variance <= kNegligible * kNegligible * size;
+}
+
+void copyTile(std::span<const Plane> from, const PixelArea& tile, std::span<Plane> to) {
   for (size_t c = 0; c < from.size(); ++c)
-    for (int y = top; y < bottom; ++y)
-      std::copy(from[c].row(y) + left, from[c].row(y) + right, to[c].row(y) + left);
+    for (int y = tile.top; y < tile.bottom(); ++y)
+      std::copy(from[c].row(y) + tile.left, from[c].row(y) + tile.right(),
+                to[c].row(y) + tile.left);
 }
 
 // The reach of the window that must hold as much light in the other half. A window as wide as the
@@ -137,15 +146,14 @@ HalfChannels averageHalves(const HalfGuides& halves, const std::atomic<bool>& st
     const std::vector<Plane>& channels = halves[half].values;
     std::vector<Plane>& means = results[half];
     for (size_t c = 0; c < channels.size(); ++c) means.emplace_back(width, height);
-    forTiles(width, height, stop, [&](int left, int top) {
-      const int bottom = std::min(top + kHeight, height), right = std::min(left + kWidth, width);
-      if (isClean(halves[1 - half], left, top, right, bottom)) {
-        copyTile(channels, left, top, right, bottom, means);
-        return;
-      }
+    forTiles(width, height, stop, [&](const PixelArea& tile) {
+      copyTile(channels, tile, means);
+      const PixelArea noisy =
+          boundsOf(tile, [&](int x, int y) { return !isClean(halves[1 - half], x, y); });
+      if (noisy.empty()) return;
       TileWeights& weights = tileWeights.local();
-      weights.compute(halves[1 - half], left, top);
-      averageTile(weights, 1, channels, left, top, means);
+      weights.compute(halves[1 - half], noisy, {});
+      averageArea(weights, 1, channels, noisy, means);
     });
     for (Plane& mean : means) mean.extend();
   }
@@ -177,14 +185,21 @@ FilteredHalves filterHalves(const Component& component, const HalfGuides& guides
     RgbPlanes& means = results.averages[half];
     if (averagePower > 0)
       for (Plane& mean : means) mean = Plane(width, height);
-    forTiles(width, height, stop, [&](int left, int top) {
+    forTiles(width, height, stop, [&](const PixelArea& tile) {
+      if (averagePower > 0) copyTile(component.halves[half], tile, means);
+      const PixelArea used =
+          boundsOf(tile, [&](int x, int y) { return component.used.at(x, y) != 0; });
+      if (used.empty()) return;
+      // Every second row has the centres of windows, other rows in each half: 1.7 times faster,
+      // with 1% more error on average. Each window predicts 15 rows.
+      const int first = std::min((used.top + int(half)) % 2, used.height - 1);
+      const TileWeights::Rows all, centres{first, 2};
       TileWeights& weights = tileWeights.local();
-      weights.compute(guides[1 - half], left, top);
+      weights.compute(guides[1 - half], used, averagePower > 0 ? all : centres);
       for (size_t i = 0; i < kBandwidths; ++i)
-        addRegressions(weights, powers[i], component.halves[half], features, left, top,
+        addRegressions(weights, powers[i], component.halves[half], features, used, centres,
                        predictions[i]);
-      if (averagePower > 0)
-        averageTile(weights, averagePower, component.halves[half], left, top, means);
+      if (averagePower > 0) averageArea(weights, averagePower, component.halves[half], used, means);
     });
     for (size_t i = 0; i < kBandwidths; ++i)
       results.regressions[i][half] = finished(predictions[i], component.halves[half]);

@@ -15,6 +15,7 @@ using HalfPlanes = std::array<RgbPlanes, 2>;
 struct Component {
   HalfPlanes halves;
   RgbPlanes variance;  // of the mean of both halves
+  Plane used;          // 0: the result of this pixel does not matter
 };
 
 // The input of weights[h]: half h.
@@ -24,7 +25,7 @@ HalfGuides guidesOf(const Component& component);
 
 // The weighted means of the channels of each half, with weights from the other.
 using HalfChannels = std::array<std::vector<Plane>, 2>;
-// Tiles with negligible noise stay as they are.
+// Pixels with negligible noise may stay as they are.
 HalfChannels averageHalves(const HalfGuides& halves, const std::atomic<bool>& stop);
 
 constexpr int kBandwidths = 2;

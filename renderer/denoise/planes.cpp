@@ -16,8 +16,7 @@ void Plane::extend() {
 }
 
 void Plane::clear() {
-  parallelFor(-kMargin, height_ + kMargin,
-              [&](int y) { std::fill_n(row(y) - kMargin, stride_, 0.0f); });
+  std::fill_n(row(-kMargin) - kMargin, size_t(stride_) * size_t(height_ + 2 * kMargin), 0.0f);
 }
 
 Plane planeOf(const Image& image, int channel) {
@@ -26,17 +25,26 @@ Plane planeOf(const Image& image, int channel) {
 }
 
 Plane boxMean(const Plane& plane, int reach) {
+  const int width = plane.width(), height = plane.height();
   const float scale = 1 / float(2 * reach + 1);
-  const Plane rows = makePlaneLike(plane, [&](int x, int y) {
-    float sum = 0;
-    for (int i = -reach; i <= reach; ++i) sum += plane.at(x + i, y);
-    return sum * scale;
-  });
-  return makePlaneLike(plane, [&](int x, int y) {
-    float sum = 0;
-    for (int i = -reach; i <= reach; ++i) sum += rows.at(x, y + i);
-    return sum * scale;
-  });
+  // A row of sums, by sums of whole rows or parts of them, which are vectors.
+  const auto means = [&](const auto& summand) {
+    Plane result(width, height);
+    forIndices(size_t(height), size_t(width) * size_t(reach + 1), [&](size_t i) {
+      const int y = int(i);
+      float* sums = result.row(y);
+      std::fill_n(sums, width, 0.0f);
+      for (int k = -reach; k <= reach; ++k) {
+        const float* from = summand(y, k);
+        for (int x = 0; x < width; ++x) sums[x] += from[x];
+      }
+      for (int x = 0; x < width; ++x) sums[x] *= scale;
+    });
+    result.extend();
+    return result;
+  };
+  const Plane rows = means([&](int y, int k) { return plane.row(y) + k; });
+  return means([&](int y, int k) { return rows.row(y + k); });
 }
 
 }  // namespace chromeball

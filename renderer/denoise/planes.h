@@ -17,7 +17,7 @@ namespace chromeball {
 // pixels. A new plane is not initialized.
 class Plane {
  public:
-  static constexpr int kMargin = 56;
+  static constexpr int kMargin = 32;
 
   Plane() = default;
   Plane(int width, int height)
@@ -50,7 +50,8 @@ using RgbPlanes = std::array<Plane, 3>;
 template <class Value>
 Plane makePlane(int width, int height, const Value& value) {
   Plane plane(width, height);
-  parallelFor(0, height, [&](int y) {
+  forIndices(size_t(height), size_t(width), [&](size_t i) {
+    const int y = int(i);
     float* row = plane.row(y);
     for (int x = 0; x < width; ++x) row[x] = value(x, y);
   });

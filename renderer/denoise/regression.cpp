@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/regression.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "denoise/planes.h"
@@ -15,46 +16,55 @@ constexpr int kPatch = TileWeights::kPatch;
 constexpr int kPaddedHeight = kTileHeight + 2 * kPatch;
 constexpr int kPaddedWidth = kTileWidth + kLanes;
 static_assert(2 * kPatch <= kLanes);
-static_assert(kPaddedWidth + kPatch + TileWeights::kReach <= Plane::kMargin);
+// Whole vectors of a tile's pixels and their patches, and windows around them, are read.
+static_assert(2 * kPatch + kLanes + TileWeights::kReach <= Plane::kMargin);
 using Padded = std::array<std::array<float, kPaddedWidth>, kPaddedHeight>;
 
 constexpr float kFarthest = 1e4f;  // a larger distance of one pixel counts as this
 
-void pixelDistances(const NoisyPlanes& guide, int left, int top, int dx, int dy,
+void pixelDistances(const NoisyPlanes& guide, const PixelArea& area, int dx, int dy,
                     Padded& distances) {
+  constexpr int kVectors = kPaddedWidth / kLanes;
   const float scale = 1 / float(guide.values.size());
-  for (int y = 0; y < kPaddedHeight; ++y) {
-    const int row = top - kPatch + y, column = left - kPatch;
-    for (int x = 0; x < kPaddedWidth; x += kLanes) {
-      Float8 sum{};
-      for (size_t c = 0; c < guide.values.size(); ++c) {
-        const Plane &values = guide.values[c], &variances = guide.variances[c];
-        const Float8 difference =
-            load8(values.row(row) + column + x) - load8(values.row(row + dy) + column + x + dx);
-        const Float8 variance = load8(variances.row(row) + column + x) +
-                                load8(variances.row(row + dy) + column + x + dx);
-        sum += (difference * difference - variance) / (variance + 1e-30f);
+  const int vectors = (area.width + 2 * kPatch + kLanes - 1) / kLanes;
+  for (int y = 0; y < area.height + 2 * kPatch; ++y) {
+    const int row = area.top - kPatch + y, column = area.left - kPatch;
+    Float8 sums[kVectors]{};
+    for (size_t c = 0; c < guide.values.size(); ++c) {
+      const float* value = guide.values[c].row(row) + column;
+      const float* otherValue = guide.values[c].row(row + dy) + column + dx;
+      const float* variance = guide.variances[c].row(row) + column;
+      const float* otherVariance = guide.variances[c].row(row + dy) + column + dx;
+      for (int i = 0; i < vectors; ++i) {
+        const int x = i * kLanes;
+        const Float8 difference = load8(value + x) - load8(otherValue + x);
+        const Float8 both = load8(variance + x) + load8(otherVariance + x);
+        sums[i] += (difference * difference - both) / (both + 1e-30f);
       }
-      store8(&distances[size_t(y)][size_t(x)], min8(sum * scale, splat8(kFarthest)));
     }
+    for (int i = 0; i < vectors; ++i)
+      store8(&distances[size_t(y)][size_t(i * kLanes)], min8(sums[i] * scale, splat8(kFarthest)));
   }
 }
 
-// The mean over the patch around each pixel of the tile. Overwrites `distances`.
-void patchMeans(Padded& distances, TileWeights::Tile& means) {
+// The weights of the wanted rows, from the mean over the patch around each pixel.
+void weightsOf(const Padded& distances, const PixelArea& area, TileWeights::Rows rows,
+               TileWeights::Tile& weights) {
   constexpr int kSide = 2 * kPatch + 1;
-  for (auto& row : distances)
-    for (int x = 0; x < kTileWidth; x += kLanes) {
-      Float8 sum{};
-      for (int i = 0; i < kSide; ++i) sum += load8(&row[size_t(x + i)]);
-      store8(&row[size_t(x)], sum);
-    }
-  for (int y = 0; y < kTileHeight; ++y)
-    for (int x = 0; x < kTileWidth; x += kLanes) {
+  std::array<float, kPaddedWidth> columns{};  // sums
+  for (int y = rows.first; y < area.height; y += rows.step) {
+    for (int x = 0; x < area.width + 2 * kPatch; x += kLanes) {
       Float8 sum{};
       for (int i = 0; i < kSide; ++i) sum += load8(&distances[size_t(y + i)][size_t(x)]);
-      store8(&means[size_t(y * kTileWidth + x)], sum * (1 / float(kSide * kSide)));
+      store8(&columns[size_t(x)], sum);
     }
+    for (int x = 0; x < area.width; x += kLanes) {
+      Float8 sum{};
+      for (int i = 0; i < kSide; ++i) sum += load8(&columns[size_t(x + i)]);
+      const Float8 mean = sum * (1 / float(kSide * kSide));
+      store8(&weights[size_t(y * kTileWidth + x)], expOfMinus(max8(mean, Float8{})));
+    }
+  }
 }
 
 // Pixels [begin, end) of [first, first + count) that are inside an image of `size`, and whose
@@ -68,19 +78,17 @@ struct Range {
 
 }  // namespace
 
-void TileWeights::compute(const NoisyPlanes& guide, int left, int top) {
+void TileWeights::compute(const NoisyPlanes& guide, const PixelArea& area, Rows wanted) {
+  assert(area.width <= kTileWidth && area.height <= kTileHeight);
   const Plane& plane = guide.values[0];
   Padded distances;
   forNeighbours([&](size_t neighbour, int dx, int dy) {
     Tile& tile = weights_[neighbour];
-    pixelDistances(guide, left, top, dx, dy, distances);
-    patchMeans(distances, tile);
-    for (size_t i = 0; i < tile.size(); i += kLanes)
-      store8(&tile[i], expOfMinus(max8(load8(&tile[i]), Float8{})));
-
-    const Range columns(left, kTileWidth, dx, plane.width()),
-        rows(top, kTileHeight, dy, plane.height());
-    for (int y = 0; y < kTileHeight; ++y) {
+    pixelDistances(guide, area, dx, dy, distances);
+    weightsOf(distances, area, wanted, tile);
+    const Range columns(area.left, kTileWidth, dx, plane.width()),
+        rows(area.top, kTileHeight, dy, plane.height());
+    for (int y = wanted.first; y < area.height; y += wanted.step) {
       float* row = &tile[size_t(y * kTileWidth)];
       const bool inside = y >= rows.begin && y < rows.end && columns.begin < columns.end;
       std::fill(row, row + (inside ? columns.begin : kTileWidth), 0.0f);
@@ -202,22 +210,21 @@ void addRegression(const TileWeights& weights, size_t index, const RgbPlanes& co
 }
 
 template <int kPower>
-void addTile(const TileWeights& weights, const RgbPlanes& color, const FeaturePlanes& features,
-             int left, int top, Predictions& predictions) {
-  const int columns = std::min(TileWeights::kWidth, color[0].width() - left);
-  const int rows = std::min(TileWeights::kHeight, color[0].height() - top);
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; x += kLanes)
-      addRegression<kPower>(weights, size_t(y * TileWeights::kWidth + x), color, features, left + x,
-                            top + y, predictions);
+void addArea(const TileWeights& weights, const RgbPlanes& color, const FeaturePlanes& features,
+             const PixelArea& area, TileWeights::Rows rows, Predictions& predictions) {
+  for (int y = rows.first; y < area.height; y += rows.step)
+    for (int x = 0; x < area.width; x += kLanes)
+      addRegression<kPower>(weights, size_t(y * TileWeights::kWidth + x), color, features,
+                            area.left + x, area.top + y, predictions);
 }
 
 }  // namespace
 
 void addRegressions(const TileWeights& weights, int power, const RgbPlanes& color,
-                    const FeaturePlanes& features, int left, int top, Predictions& predictions) {
-  const auto add = power == 1 ? addTile<1> : power == 4 ? addTile<4> : addTile<8>;
-  add(weights, color, features, left, top, predictions);
+                    const FeaturePlanes& features, const PixelArea& area, TileWeights::Rows rows,
+                    Predictions& predictions) {
+  const auto add = power == 1 ? addArea<1> : power == 4 ? addArea<4> : addArea<8>;
+  add(weights, color, features, area, rows, predictions);
 }
 
 }  // namespace chromeball

@@ -18,7 +18,16 @@ struct NoisyPlanes {
   std::vector<Plane> values, variances;
 };
 
-// For each pixel p of a tile: the weights of the pixels of the window around p.
+// Pixels of an image.
+struct PixelArea {
+  int left, top, width, height;
+
+  bool empty() const { return width <= 0 || height <= 0; }
+  int right() const { return left + width; }
+  int bottom() const { return top + height; }
+};
+
+// For each pixel p of an area of at most a tile: the weights of the pixels of the window around p.
 class TileWeights {
  public:
   static constexpr int kWidth = 32, kHeight = 32;
@@ -30,12 +39,18 @@ class TileWeights {
 
   TileWeights() : weights_(kOffsets) {}
 
+  // Rows of an area: all, or every second one from `first` on.
+  struct Rows {
+    int first = 0, step = 1;
+  };
+
   // exp(-max(d, 0)), where d is the mean over patch and channels of
   //   ((a - b)^2 - (var a + var b)) / (var a + var b);
-  // 0 for p or its neighbour outside the image. (left, top) is the tile's first pixel.
-  void compute(const NoisyPlanes& guide, int left, int top);
+  // 0 for p or its neighbour outside the image. Only for p in `rows` of the area.
+  void compute(const NoisyPlanes& guide, const PixelArea& area, Rows rows);
 
-  // The weights of neighbour (dx, dy), for all p; neighbours are ordered by rows.
+  // The weights of neighbour (dx, dy), for all p, in rows of kWidth from the first pixel of the
+  // area on; neighbours are ordered by rows.
   const Tile& operator[](size_t neighbour) const { return weights_[neighbour]; }
 
  private:
@@ -70,11 +85,12 @@ struct Predictions {
   }
 };
 
-// For each pixel p of the tile, fits b to
+// For each pixel p in `rows` of the area of the weights, fits b to
 //   color(q) ~ b0 + sum_i b_i (feature_i(q) - feature_i(p))
 // over the window of p, with the weights raised to a power (1, 4 or 8), and adds its predictions
-// for all q. Writes at most TileWeights::kReach pixels, and a vector, outside the tile.
+// for all q. Writes at most TileWeights::kReach pixels, and a vector, outside the area.
 void addRegressions(const TileWeights& weights, int power, const RgbPlanes& color,
-                    const FeaturePlanes& features, int left, int top, Predictions& predictions);
+                    const FeaturePlanes& features, const PixelArea& area, TileWeights::Rows rows,
+                    Predictions& predictions);
 
 }  // namespace chromeball

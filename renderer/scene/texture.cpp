@@ -36,29 +36,37 @@ float decodeSrgbFast(float c) {
   return kSrgbCurve[i] + (x - float(i)) * (kSrgbCurve[i + 1] - kSrgbCurve[i]);
 }
 
-vec4 decode(const std::array<uint8_t, 4>& t, bool srgb) {
-  const float alpha = t[3] * (1 / 255.0f);
-  if (srgb) return {kSrgb8[t[0]], kSrgb8[t[1]], kSrgb8[t[2]], alpha};
-  return vec4(t[0], t[1], t[2], t[3]) * (1 / 255.0f);
+const std::array<float, 256> kLinear8 = [] {
+  std::array<float, 256> table;
+  for (int i = 0; i < 256; ++i) table[i] = float(i) * (1 / 255.0f);
+  return table;
+}();
+
+using Float4 = float __attribute__((vector_size(16)));  // RGBA
+
+Float4 mix(Float4 a, Float4 b, float t) { return a * (1 - t) + b * t; }
+
+Float4 decode(const std::array<uint8_t, 4>& t, bool srgb) {
+  const auto& curve = srgb ? kSrgb8 : kLinear8;
+  return Float4{curve[t[0]], curve[t[1]], curve[t[2]], kLinear8[t[3]]};
 }
 
-vec4 decode(const vec4& t, bool srgb) {
-  if (!srgb) return t;
-  return {decodeSrgbFast(t.x), decodeSrgbFast(t.y), decodeSrgbFast(t.z), t.w};
+Float4 decode(const vec4& t, bool srgb) {
+  if (!srgb) return Float4{t.x, t.y, t.z, t.w};
+  return Float4{decodeSrgbFast(t.x), decodeSrgbFast(t.y), decodeSrgbFast(t.z), t.w};
 }
 
-[[gnu::noinline]] vec4 fetchFromFile(const TexelGrid& grid, bool srgb, int x, int y) {
+[[gnu::noinline]] Float4 fetchElsewhere(const TexelGrid& grid, bool srgb, int x, int y) {
+  if (!grid.file) return decode(grid.texelsFloat[size_t(y) * size_t(grid.width) + size_t(x)], srgb);
   const TexelFile& file = *grid.file;
   return file.has8Bits(grid.fileImage) ? decode(file.texel8(grid.fileImage, x, y), srgb)
                                        : decode(file.texelFloat(grid.fileImage, x, y), srgb);
 }
 
-vec4 fetch(const TexelGrid& grid, bool srgb, int x, int y) {
-  const size_t i = size_t(y) * grid.width + x;
-  if (!grid.texels8.empty()) return decode(grid.texels8[i], srgb);
-  if (grid.file) [[unlikely]]
-    return fetchFromFile(grid, srgb, x, y);
-  return decode(grid.texelsFloat[i], srgb);
+[[gnu::always_inline]] inline Float4 fetch(const TexelGrid& grid, bool srgb, int x, int y) {
+  if (grid.texels8.empty()) [[unlikely]]
+    return fetchElsewhere(grid, srgb, x, y);
+  return decode(grid.texels8[size_t(y) * size_t(grid.width) + size_t(x)], srgb);
 }
 
 // Maps a texel index at most one period outside [0, size) into that range. A coordinate after
@@ -102,69 +110,79 @@ size_t TexelGrid::byteCount() const {
   return texels8.size() * sizeof(texels8[0]) + texelsFloat.size() * sizeof(vec4);
 }
 
-vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y) { return fetch(grid, srgb, x, y); }
+namespace {
+
+vec4 rgba(Float4 texel) { return {texel[0], texel[1], texel[2], texel[3]}; }
+
+// Precondition of these: `uv` is finite.
+template <class Fetch>
+[[gnu::always_inline]] inline Float4 bilinear(const Texture& t, const TexelGrid& g, vec2 uv,
+                                              const Fetch& fetch) {
+  const float x = reduce(uv.x, t.wrapS) * float(g.width) - 0.5f;
+  const float y = reduce(uv.y, t.wrapT) * float(g.height) - 0.5f;
+  const float fx = std::floor(x), fy = std::floor(y);
+  const int x0 = wrapIndex(int(fx), g.width, t.wrapS);
+  const int x1 = wrapIndex(int(fx) + 1, g.width, t.wrapS);
+  const int y0 = wrapIndex(int(fy), g.height, t.wrapT);
+  const int y1 = wrapIndex(int(fy) + 1, g.height, t.wrapT);
+  const Float4 top = mix(fetch(g, x0, y0), fetch(g, x1, y0), x - fx);
+  const Float4 bottom = mix(fetch(g, x0, y1), fetch(g, x1, y1), x - fx);
+  return mix(top, bottom, y - fy);
+}
+
+template <class Fetch>
+Float4 nearestOrBilinear(const Texture& t, vec2 uv, const Fetch& fetch) {
+  const TexelGrid& g = *t.grid;
+  if (t.filter == Filter::Linear) return bilinear(t, g, uv, fetch);
+  const int x = int(reduce(uv.x, t.wrapS) * float(g.width));
+  const int y = int(reduce(uv.y, t.wrapT) * float(g.height));
+  return fetch(g, wrapIndex(x, g.width, t.wrapS), wrapIndex(y, g.height, t.wrapT));
+}
+
+template <class Fetch>
+Float4 trilinear(const Texture& t, vec2 uv, float texels, const Fetch& fetch) {
+  // level = log2(texels) / 2, with the logarithm interpolated linearly between powers of two.
+  int exponent = 0;
+  const float mantissa = 2 * std::frexp(texels, &exponent) - 1;
+  const float level = 0.5f * (float(exponent - 1) + mantissa);
+  const std::vector<TexelGrid>& levels = *t.mipLevels;
+  if (!(level < float(levels.size()))) return bilinear(t, levels.back(), uv, fetch);
+  const size_t below = size_t(level);
+  const Float4 finer =
+      below == 0 ? nearestOrBilinear(t, uv, fetch) : bilinear(t, levels[below - 1], uv, fetch);
+  return mix(finer, bilinear(t, levels[below], uv, fetch), level - float(below));
+}
 
 // A filtered lookup; mean(fetch) is the weighted mean of fetched texels. If colours are weighted by
 // alpha, returns the mean of (alpha colour, alpha), with the colour then divided by alpha.
 template <class Mean>
-[[gnu::always_inline]] static inline vec4 weighted(const Texture& t, const Mean& mean) {
+[[gnu::always_inline]] inline vec4 weighted(const Texture& t, const Mean& mean) {
   const bool srgb = t.srgb;
   const auto plain = [srgb](const TexelGrid& g, int x, int y) { return fetch(g, srgb, x, y); };
-  if (!t.weightedByAlpha) return mean(plain);
-  const vec4 sum = mean([srgb](const TexelGrid& g, int x, int y) {
-    const vec4 texel = fetch(g, srgb, x, y);
-    return vec4(texel.w * Rgb(texel), texel.w);
-  });
-  if (!(sum.w > 0)) return mean(plain);  // visible if an alpha mask has a cutoff of 0
+  if (!t.weightedByAlpha) return rgba(mean(plain));
+  const vec4 sum = rgba(mean([srgb](const TexelGrid& g, int x, int y) {
+    const Float4 texel = fetch(g, srgb, x, y);
+    return Float4{texel[0], texel[1], texel[2], 1} * texel[3];
+  }));
+  if (!(sum.w > 0)) return rgba(mean(plain));  // visible if an alpha mask has a cutoff of 0
   return vec4(Rgb(sum) / sum.w, sum.w);
 }
 
+}  // namespace
+
+vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y) {
+  return rgba(fetch(grid, srgb, x, y));
+}
+
 vec4 Texture::lookup(vec2 uv) const {
-  return weighted(*this, [&](const auto& fetch) { return nearestOrBilinear(uv, fetch); });
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return linearTexel(*grid, srgb, 0, 0);
+  return weighted(*this, [&](const auto& fetch) { return nearestOrBilinear(*this, uv, fetch); });
 }
 
 vec4 Texture::lookup(vec2 uv, float texels) const {
   if (!(texels > 1) || !mipLevels || mipLevels->empty()) return lookup(uv);
   if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return lookup(uv);
-  return weighted(*this, [&](const auto& fetch) { return trilinear(uv, texels, fetch); });
-}
-
-template <class Fetch>
-vec4 Texture::nearestOrBilinear(vec2 uv, const Fetch& fetch) const {
-  const TexelGrid& g = *grid;
-  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch(g, 0, 0);
-  if (filter == Filter::Linear) return bilinear(g, uv, fetch);
-  const int x = int(reduce(uv.x, wrapS) * float(g.width));
-  const int y = int(reduce(uv.y, wrapT) * float(g.height));
-  return fetch(g, wrapIndex(x, g.width, wrapS), wrapIndex(y, g.height, wrapT));
-}
-
-template <class Fetch>
-vec4 Texture::trilinear(vec2 uv, float texels, const Fetch& fetch) const {
-  // level = log2(texels) / 2, with the logarithm interpolated linearly between powers of two.
-  int exponent = 0;
-  const float mantissa = 2 * std::frexp(texels, &exponent) - 1;
-  const float level = 0.5f * (float(exponent - 1) + mantissa);
-  const size_t last = mipLevels->size();
-  if (!(level < float(last))) return bilinear(mipLevels->back(), uv, fetch);
-  const size_t below = size_t(level);
-  const vec4 finer =
-      below == 0 ? nearestOrBilinear(uv, fetch) : bilinear((*mipLevels)[below - 1], uv, fetch);
-  return glm::mix(finer, bilinear((*mipLevels)[below], uv, fetch), level - float(below));
-}
-
-// Precondition: `uv` is finite.
-template <class Fetch>
-vec4 Texture::bilinear(const TexelGrid& g, vec2 uv, const Fetch& fetch) const {
-  const float x = reduce(uv.x, wrapS) * float(g.width);
-  const float y = reduce(uv.y, wrapT) * float(g.height);
-  const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f);
-  const float tx = x - 0.5f - fx, ty = y - 0.5f - fy;
-  const int x0 = wrapIndex(int(fx), g.width, wrapS), x1 = wrapIndex(int(fx) + 1, g.width, wrapS);
-  const int y0 = wrapIndex(int(fy), g.height, wrapT), y1 = wrapIndex(int(fy) + 1, g.height, wrapT);
-  const vec4 top = glm::mix(fetch(g, x0, y0), fetch(g, x1, y0), tx);
-  const vec4 bottom = glm::mix(fetch(g, x0, y1), fetch(g, x1, y1), tx);
-  return glm::mix(top, bottom, ty);
+  return weighted(*this, [&](const auto& fetch) { return trilinear(*this, uv, texels, fetch); });
 }
 
 namespace {

@@ -48,14 +48,6 @@ struct Texture {
   // The mean of an area of about `texels` texels around uv: trilinear between mip levels (Williams
   // 1983). Up to one texel it is lookup(uv).
   vec4 lookup(vec2 uv, float texels) const;
-
- private:
-  template <class Fetch>
-  vec4 nearestOrBilinear(vec2 uv, const Fetch& fetch) const;
-  template <class Fetch>
-  vec4 bilinear(const TexelGrid& from, vec2 uv, const Fetch& fetch) const;
-  template <class Fetch>
-  vec4 trilinear(vec2 uv, float texels, const Fetch& fetch) const;
 };
 
 // Linear RGBA of one texel.
