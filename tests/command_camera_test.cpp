@@ -245,7 +245,7 @@ TEST_F(CommandCamera, CamerasInFilesAreChecked) {
   };
   const std::string byFile = "file = \"camera.toml\"\n";
   refuse("file = \"none.toml\"", "no such file");
-  refuse(byFile + "fov = 40", "[camera] has a `file`; it cannot have `fov` too");
+  refuse(byFile + "up = [0, 1, 0]", "[camera] has a `file`; it cannot have `up` too");
   refuse(byFile + "distortion = 0.1", "it cannot have `distortion` too");
   refuse(byFile, "camera.toml: has no [camera] with `position` and `look_at`", "");
   refuse(byFile, "camera.toml:2: a camera's own file has `position`", "[camera]\nfile = \"a\"\n");

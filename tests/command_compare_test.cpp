@@ -381,6 +381,30 @@ TEST_F(SlowCommandCompare, comparesModes) {
   EXPECT_EQ(biased, std::set<std::string>(std::begin(all) + 2, std::end(all)));
 }
 
+// What `render` says of an idle setting, `compare` says of a row's mode.
+TEST_F(SlowCommandCompare, idleModesAreNamed) {
+  const TemporaryFolder out;
+  const std::string root = kSourceDir;
+  const auto errorOf = [&](const std::string& row, const char* samples) {
+    const CommandResult result = runCommand(
+        {"compare", root + "/scenes/models/pillars.gltf", "--probe", root + "/probes/dusk.exr",
+         "--size", "12x8", "--strategies", row, "--samples", samples, "--repeats", "3",
+         "--reference-samples", "16", "-o", out / ("of-" + row)});
+    EXPECT_EQ(result.status, 0) << result.error;
+    return result.error;
+  };
+  const auto expectIdle = [&](const std::string& row, const char* line, const char* samples) {
+    const std::string error = errorOf(row, samples);
+    EXPECT_NE(error.find(row + ": " + line), std::string::npos) << error;
+  };
+  expectIdle("importance+glass-shadows", "`render.glass_shadows` has no effect without", "16");
+  expectIdle("importance+guide+diffuse-depth:2", "nothing is guided, since", "16");
+  expectIdle("importance+guide", "nothing is guided with fewer than", "4");
+  const std::string error = errorOf("importance+guide+regularize", "16");
+  EXPECT_EQ(error.find("no effect"), std::string::npos) << error;
+  EXPECT_EQ(error.find("nothing is guided"), std::string::npos) << error;
+}
+
 TEST_F(SlowCommandCompare, storedResultsStayInTheReport) {
   const Words first = {"--strategies",        "bsdf,uniform",
                        "--samples",           "1,4",

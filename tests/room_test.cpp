@@ -69,6 +69,32 @@ TEST(Room, AScreenOccludesTheWallBehindIt) {
   EXPECT_TRUE(walls.isSeen({-1, 0.5f, 1}, kCapture)) << "a point on the screen";
 }
 
+// A screen of glass, of half coverage or cut out is a wall as any other.
+TEST(Room, MaterialsOfTheModelDoNotMatter) {
+  const Scene opaque = boxModel(true, Furniture::Screen);
+  Material glass = lambert(Rgb(1));
+  glass.extended.emplace().transmission = 1;
+  glass.extended->thinWalled = true;
+  Material blended = lambert(Rgb(1)), cut = lambert(Rgb(1));
+  blended.alphaMode = AlphaMode::Blend;
+  cut.alphaMode = AlphaMode::Mask;
+  blended.baseColor.w = cut.baseColor.w = 0.25f;
+  cut.alphaCutoff = 0.5f;
+  const Room expected(opaque, kCapture, "test");
+  for (const Material& material : {glass, blended, cut}) {
+    Scene model = opaque;
+    model.materials.front() = material;
+    const Room walls(std::move(model), kCapture, "test");
+    for (uint64_t i = 0; i < 200; ++i) {
+      const vec3 from = kCapture + 0.5f * sphereDirection(i + 1000);
+      const auto wall = expected.behind(from, sphereDirection(i));
+      EXPECT_EQ(walls.behind(from, sphereDirection(i)).position, wall.position);
+      EXPECT_TRUE(walls.isSeen(wall.position, from));
+    }
+    EXPECT_FALSE(walls.isSeen({-1.99f, 0.5f, 1.5f}, kCapture));
+  }
+}
+
 // The floor on both sides of the screen is also lit by walls that the capture point cannot see.
 // BSDF samples do not depend on visibility from the capture point; light samples must agree.
 TEST(SlowRoom, StrategiesAgreeWhenWallsOccludeEachOther) {

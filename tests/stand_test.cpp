@@ -185,6 +185,54 @@ TEST(Stand, AViewTakesThePlaceOfTheModelsAndTheFilesCamera) {
   EXPECT_GT(node.camera.position.y, 3.9f);
 }
 
+// Also where the principal point is not in the middle.
+TEST(Stand, ZoomEnlargesTheMiddleOfTheImage) {
+  const Model model;
+  const std::string shifted =
+      "[camera]\nposition = [0, 4, 5]\nlook_at = [0, 4, 0]\nprincipal_point = [0.25, 0.6]\n";
+  const auto directionAt = [&](const Given& given, double u, double v) {
+    vec3 origin, direction;
+    CameraRays(model.load(given, shifted).camera, 1).ray(float(u), float(v), origin, direction);
+    return direction;
+  };
+  for (const double u : {0.0, 0.5, 1.0})
+    for (const double v : {0.2, 0.5})
+      EXPECT_LT(glm::distance(directionAt({{"camera.zoom", "4"}}, u, v),
+                              directionAt({}, 0.5 + (u - 0.5) / 4, 0.5 + (v - 0.5) / 4)),
+                1e-5f);
+}
+
+// A camera that turns around a node, or a model that turns in front of it, keeps the node in view.
+TEST(Stand, ANodeToBeLookedAtStaysInViewOfTurns) {
+  GltfWriter w;
+  addTriangle(w, {}, {{"name", "far"}, {"translation", {0, 0, -6}}});
+  addTriangle(w, {}, {{"name", "near"}, {"translation", {2, 0, 6}}});
+  w.save();
+  const std::string path = (w.folder() / "scene.toml").string();
+  for (const char* turn : {"orbit", "turntable"})
+    for (int degrees = 0; degrees < 360; degrees += 45) {
+      std::ofstream(path) << "model = \"model.gltf\"\n";
+      Settings settings;
+      settings.parse("probe.file", kProbe);
+      settings.parse("camera.look_at_node", "near");
+      settings.parse("camera.view", "0,0");
+      settings.parse("render.size", "64x64");
+      settings.parse(turn, std::to_string(degrees));
+      const LoadedScene loaded = loadScene(planRender(openScene(path), settings));
+      const Scene& scene = loaded.scene;
+      const Camera& camera = loaded.camera;
+      for (const int i : instancesBelow(scene, "near")) {
+        const Instance& instance = scene.instances[size_t(i)];
+        for (const vec3& p : scene.meshes[size_t(instance.mesh)].positions) {
+          const vec3 q = instance.point(p) - camera.position;
+          const float limit = -glm::dot(q, camera.back) * std::tan(0.5f * camera.fov);
+          EXPECT_LT(std::fabs(glm::dot(q, camera.right)), limit) << turn << " " << degrees;
+          EXPECT_LT(std::fabs(glm::dot(q, camera.up)), limit) << turn << " " << degrees;
+        }
+      }
+    }
+}
+
 TEST(Stand, FieldOfViewAndZoomAreOfAnyCamera) {
   const Model model(true);
   const auto fovOf = [&](const Given& given, const std::string& more = "") {
@@ -198,6 +246,11 @@ TEST(Stand, FieldOfViewAndZoomAreOfAnyCamera) {
     EXPECT_NEAR(half, whole / 2, 1e-5);
   }
   EXPECT_NEAR(fovOf({}, placed + "fov = 33\n"), 33, 1e-4);
+  EXPECT_NEAR(fovOf({}, "[camera]\nname = \"front\"\nfov = 33\n"), 33, 1e-4);
+  std::ofstream(model.w.folder() / "camera.toml") << placed;
+  const std::string file = "[camera]\nfile = \"camera.toml\"\n";
+  EXPECT_NEAR(fovOf({}, file + "fov = 33\n"), 33, 1e-4);
+  EXPECT_NEAR(fovOf({{"camera.fov", "20"}}, file + "fov = 33\n"), 20, 1e-4);
   EXPECT_NEAR(fovOf({}, "[camera]\nfov = 33\nview = [10, 20]\n"), 33, 1e-4);
 }
 
@@ -215,6 +268,8 @@ TEST(Stand, RefusesWhatDoesNotGoTogether) {
   refused({}, "[camera]\nname = \"front\"\nview = [0, 0]\n", "it cannot have `view` too");
   refused({}, "[camera]\nposition = [0, 0, 1]\nlook_at = [0, 0, 0]\nlook_at_node = \"falls\"\n",
           "it cannot have `look_at_node` too");
+  refused({}, "[camera]\nview = [20, 10]\nup = [0, 0, 1]\n",
+          "[camera] has `view`; it cannot have `up` too");
   refused({{"camera.view", "0,91"}}, "", "from -90 to 90");
   refused({{"camera.look_at_node", "stay"}}, "", "did you mean `stays`");
   refused({{"camera.look_at_node", "front"}}, "", "no surface");

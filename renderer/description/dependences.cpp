@@ -39,9 +39,10 @@ bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
 bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
 bool hasPaths(const D& d, const SceneContents&) { return followsPaths(d); }
 
-// A shadow catcher of nodes has a ground only if it names that.
+// A shadow catcher of nodes has a ground only if it names that. `drop` takes its height from it.
 bool hasGround(const D& d, const SceneContents&) {
-  return !d.composite || std::ranges::count(d.composite->entry.localScene, "ground") > 0;
+  return d.stand.drops || !d.composite ||
+         std::ranges::count(d.composite->entry.localScene, "ground") > 0;
 }
 
 constexpr std::array kDependences = {

@@ -13,7 +13,7 @@
 namespace chromeball {
 namespace {
 
-constexpr std::string_view kPlace[] = {"position", "look_at", "up", "fov", "orthographic"};
+constexpr std::string_view kPlace[] = {"position", "look_at", "up", "orthographic"};
 constexpr std::string_view kFraming[] = {"view", "look_at_node"};
 
 void refuse(const Section& camera, std::span<const std::string_view> keys, std::string_view owner) {
@@ -55,6 +55,9 @@ void readPlace(const Section& camera, SceneFile& scene) {
   const Entry orthographic = camera["orthographic"];
   const Entry upEntry = camera["up"], fovEntry = camera["fov"];
   if (!position && !target && !upEntry && !orthographic) return;
+  if (!position && !target)
+    for (const std::string_view framing : kFraming)
+      if (camera[framing]) refuse(camera, kPlace, fmt::format("`{}`", framing));
   if (!position || !target)
     failAt(camera.location(), "[camera] needs `name`, or both `position` and `look_at`");
   refuse(camera, kFraming, "a `position`");

@@ -20,7 +20,8 @@ std::vector<Setting> modelRows() {
        .type = Compound,
        .form = "a number other than 0, or three",
        .absent = "1",
-       .help = "Scales the model along X, Y and Z."},
+       .help = "Scales the model along X, Y and Z: a change of its unit, which "
+               "distances of absorption in glass follow."},
       {.key = "animation",
        .argument = "NAME",
        .type = Name,

@@ -70,6 +70,10 @@ Framing::Framing(const Scene& scene, float aspectRatio, const ViewWishes& wishes
   const std::vector<int> framed = subjects(scene, wishes);
   const Bounds box = bounds(scene, framed);
   if (!box.empty()) centre_ = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+  if (wishes.node && wishes.onTurntable) {  // which carries the node around the axis
+    const glm::dvec3 axis(centreOf(scene));
+    centre_ = {axis.x, centre_.y, axis.z};
+  }
   const ChosenView chosen = chooseView(scene, framed);
   isDark_ = chosen.isDark || (wishes.node && areShutIn(scene, framed, withoutGrounds(scene)));
   isInside_ = chosen.inside && !wishes.angles && !wishes.node && !wishes.turns;

@@ -14,7 +14,8 @@ struct ViewWishes {
   std::optional<ViewAngles> angles;
   std::optional<double> fov;        // vertical, radians
   std::optional<std::string> node;  // to be framed, with its descendants, in place of all
-  bool turns = false;               // around the centre
+  bool turns = false;               // the camera or the model, around the centre
+  bool onTurntable = false;         // whose axis runs through centreOf() all
 
   bool operator==(const ViewWishes&) const = default;
 };
@@ -34,6 +35,9 @@ class Framing {
   void add(const Scene& later);
 
   Camera camera() const;
+
+  // What the camera looks at, if it or the model turns.
+  vec3 centre() const { return vec3(centre_); }
 
   // Whether a probe lights nothing that the camera sees: all walls are single-sided and face
   // inwards, so that they block its light.

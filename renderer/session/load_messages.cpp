@@ -143,6 +143,14 @@ void addPlateScale(const CompositeEntry& composite, const PlateScale& found, Mes
 
 }  // namespace
 
+Messages idleMessages(const RenderDescription& description, const LoadedScene& loaded) {
+  Messages messages;
+  for (const std::string& line : idleSettings(description, contentsOf(loaded)))
+    addWarning(messages, "{}", line);
+  addGuide(description, messages);
+  return messages;
+}
+
 Messages loadMessages(const LoadedScene& loaded) {
   const RenderDescription& description = loaded.description;
   const Scene& scene = loaded.scene;
@@ -172,7 +180,8 @@ Messages loadMessages(const LoadedScene& loaded) {
     addWarning(messages,
                "the local scene is unlit (KHR_materials_unlit): it shows neither shadows nor light "
                "of the objects; give it a material that is lit");
-  warn(idleSettings(description, contentsOf(loaded)));
+  const Messages idle = idleMessages(description, loaded);
+  messages.insert(messages.end(), idle.begin(), idle.end());
   if (description.settings.denoise && description.settings.isPart())
     addNote(messages, "{}: a part is denoised when all are merged",
             namedOrigin(description, "render.denoise"));
@@ -182,7 +191,6 @@ Messages loadMessages(const LoadedScene& loaded) {
   else if (!description.probe.map)
     addLights(description, scene, messages);
   addSides(description, messages);
-  addGuide(description, messages);
   addSources(loaded, messages);
   if (const auto& scale = loaded.plateScale)
     addPlateScale(description.composite->entry, *scale, messages);

@@ -63,4 +63,7 @@ FrameChange loadFrame(const RenderDescription& description, LoadedScene& loaded,
 // Messages about the settings, the models, the probe and the plate.
 Messages loadMessages(const LoadedScene& loaded);
 
+// What of the settings of `description` has no effect on the loaded scene.
+Messages idleMessages(const RenderDescription& description, const LoadedScene& loaded);
+
 }  // namespace chromeball

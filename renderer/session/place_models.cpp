@@ -74,7 +74,9 @@ Camera withOptics(const RenderDescription& description, Camera camera) {
     throwInput(
         "{}: an orthographic camera has no lens; leave out `principal_point` and `distortion`",
         description.origins.of("camera.optics"));
-  if (optics->principalPoint) camera.principalPoint = *optics->principalPoint;
+  if (optics->principalPoint)  // zoom enlarges the middle of the image
+    camera.principalPoint =
+        0.5f + float(description.camera.zoom) * (*optics->principalPoint - 0.5f);
   camera.distortion = optics->distortion;
   return camera;
 }
@@ -149,7 +151,8 @@ ViewNeeds viewNeeds(const RenderDescription& description, const Scene& scene) {
       .turns = c.turns, .stands = needsStand(description), .floor = floorOf(description)};
   if (c.placed || c.name || (!scene.cameras.empty() && !c.frames())) return needs;
   const auto fov = c.fov ? std::optional(glm::radians(*c.fov)) : std::nullopt;
-  needs.wishes = {c.view, fov, c.node, c.turns || description.stand.turntable};
+  needs.wishes = {c.view, fov, c.node, c.turns || description.stand.turntable,
+                  description.stand.turntable.has_value()};
   needs.aspectRatio = float(s.width) / float(s.height);
   needs.choosesSides = description.choosesSides;
   return needs;
@@ -195,6 +198,7 @@ AutomaticView findView(const RenderDescription& description, const ViewNeeds& ne
   }
   if (std::isfinite(lowest)) view.lowest = lowest + view.origin.y;
   if (framing) view.camera = framing->camera(), view.isDark = framing->isDark();
+  if (framing && needs.wishes->node) view.centre = framing->centre();
   const float drop = needs.floor ? float(*needs.floor - view.lowest) : 0;
   view.centre.y += drop;
   if (view.camera) view.camera->position.y += drop;

@@ -104,13 +104,13 @@ FinishedRender renderLoaded(const LoadedScene& loaded, const PreparedScene& prep
   result.render.interrupted |= description.settings.denoisesAtEnd() && !result.denoised;
   result.seconds = watch.lap();
   if (constexpr double kNotable = 0.05; kept.seconds > kNotable)
-    addNote(result.messages, "{}: {:.2g} s of it were kept for {}writing",
+    addNote(result.messages, "{}: {:.3g} s of it were kept for {}writing",
             description.origins.of("render.time"), kept.seconds,
             description.settings.denoisesAtEnd() ? "denoising and " : "");
   if (result.render.overrun > 0)
     addWarning(
         result.messages,
-        "{}: the first pass, which is always completed, took {:.2g} s, longer than {:.2g} s{}",
+        "{}: the first pass, which is always completed, took {:.3g} s, longer than {:.3g} s{}",
         description.origins.of("render.time"), result.render.overrun, *kept.settings.timeLimit,
         kept.seconds > 0
             ? fmt::format(", which {:g} s leave for the samples", *description.settings.timeLimit)

@@ -32,6 +32,13 @@ uint32_t Study::leastSamples() const {
   return least;
 }
 
+uint32_t Study::mostSamples() const {
+  uint32_t most = 0;
+  for (const Budget& budget : budgets)
+    most = std::max(most, budget.timed ? kMaxSamples : uint32_t(budget.amount));
+  return most;
+}
+
 RenderKey Study::referencePart(int part) const {
   const int samples = (referenceSamples + kReferenceParts - 1) / kReferenceParts;
   return {kReference, {false, double(samples)}, part};
@@ -143,6 +150,15 @@ Row Row::representative() const {
     if (specularDepth > 0) row.specularDepth.reset();
   }
   return row;
+}
+
+std::vector<std::string_view> Row::settings() const {
+  std::vector<std::string_view> names;
+  for (const auto& [mode, setting] : {std::pair{Mode::Guide, "render.guide"},
+                                      {Mode::Regularize, "render.regularize"},
+                                      {Mode::GlassShadows, "render.glass_shadows"}})
+    if (has(mode)) names.push_back(setting);
+  return names;
 }
 
 RenderSettings Row::applied(RenderSettings settings) const {

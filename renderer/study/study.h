@@ -59,6 +59,7 @@ struct Study {
 
   // The smallest budget in samples; kMaxSamples if all are in seconds.
   uint32_t leastSamples() const;
+  uint32_t mostSamples() const;  // of a render without a limit of time
   RenderKey referencePart(int part) const;
   // All renders, in the order of rendering. Strategies alternate, so that a machine whose speed
   // drifts does not favour any of them.
@@ -93,6 +94,8 @@ struct Row {
   bool isBiased() const;     // by more than its strategy
   bool joinsPixels() const;  // so that the errors of pixels depend on each other
   std::string name() const;
+  // The names of the scene file's settings of those modes that may have no effect.
+  std::vector<std::string_view> settings() const;
   // The row that stands for all with the same pixels but for their seeds: without what has no
   // effect with its integrator.
   Row representative() const;

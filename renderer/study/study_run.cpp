@@ -47,6 +47,22 @@ StudyRun::StudyRun(const Study& study, const RenderStore& store, const LoadedSce
   }
 }
 
+Messages StudyRun::idleModes() const {
+  Messages messages;
+  for (const std::string& name : study_.strategies) {
+    RenderDescription alone = loaded_.description;
+    const Row& row = built_.at(name).row;
+    row.applyTo(alone);
+    alone.settings.samples = study_.mostSamples();
+    alone.origins = {};
+    for (const std::string_view setting : row.settings())
+      alone.origins.set(std::string(setting), name);
+    const Messages idle = idleMessages(alone, loaded_);
+    messages.insert(messages.end(), idle.begin(), idle.end());
+  }
+  return messages;
+}
+
 void StudyRun::makeWorlds() {
   const auto anyHas = [&](Mode mode) {
     return std::ranges::any_of(built_, [&](const auto& one) { return one.second.row.has(mode); });

@@ -23,6 +23,9 @@ class StudyRun {
   StudyRun(const Study& study, const RenderStore& store, const LoadedScene& loaded,
            const RenderSettings& settings);
 
+  // What of the rows' own modes has no effect, each message with its row.
+  Messages idleModes() const;
+
   // Renders and stores the missing images. `progress` receives the fraction of the estimated time
   // that has elapsed; `finishedBudget` is called when all strategies have rendered a budget.
   // Returns false if `stop` was set; the unfinished render is discarded.

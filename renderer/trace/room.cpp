@@ -1,13 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trace/room.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "scene/surface.h"
 
 namespace chromeball {
+namespace {
+
+// All walls are opaque, so that each ray and each light sample meets the same one.
+Scene geometryOf(Scene model) {
+  std::ranges::fill(model.materials, Material());
+  return model;
+}
+
+}  // namespace
 
 Room::Room(Scene model, const vec3& capture, const std::string& location)
-    : scene_(std::move(model)), accel_(scene_), box_(bounds(scene_)) {
+    : scene_(geometryOf(std::move(model))), accel_(scene_), box_(bounds(scene_)) {
   constexpr float kMargin = 1e-4f;
   if (box_.empty()) throwInput("{}: the room has no triangles", location);
   margin_ = kMargin * glm::length(box_.max - box_.min);

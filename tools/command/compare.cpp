@@ -212,6 +212,7 @@ void compare(const CompareArguments& a, const Command& command) {
   print(ofRows);
   print(ofReference);
   print(loaded.messages);
+  print(run.idleModes());
   if (hadComposite)
     warn(
         "{}: [composite] is ignored: strategies are compared on the whole model, without the plate",
