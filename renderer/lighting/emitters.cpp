@@ -84,7 +84,9 @@ std::unique_ptr<Emitters> Emitters::make(const Scene& scene) {
 
 Emitters::Emitters(const Scene& scene, std::vector<EmissiveTriangle> triangles,
                    const std::vector<double>& powers, const std::vector<double>& radiances)
-    : scene_(scene), triangles_(std::move(triangles)), choice_(1, int(triangles_.size())) {
+    : scene_(scene),
+      triangles_(std::move(triangles)),
+      choice_(1, int(triangles_.size()), std::max(CdfRows::kGuide, int(triangles_.size()))) {
   const double total = choice_.setRow(0, powers);
   for (double radiance : radiances) areaPdf_.push_back(float(radiance / total));
 }

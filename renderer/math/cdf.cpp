@@ -5,10 +5,12 @@
 
 namespace chromeball {
 
-CdfRows::CdfRows(int rows, int columns)
+CdfRows::CdfRows(int rows, int columns, int guide)
     : columns_(columns),
+      guideSize_(guide),
+      guideScale_(guide),
       cdf_(longArray<double>(size_t(rows) * (columns + 1))),
-      guide_(size_t(rows) * (kGuide + 1)) {}
+      guide_(longArray<int32_t>(size_t(rows) * size_t(guide + 1))) {}
 
 double CdfRows::setRow(int row, std::span<const double> weights) {
   assert(int(weights.size()) == columns_);
@@ -28,12 +30,13 @@ double CdfRows::setRow(int row, std::span<const double> weights) {
   // sampled.
   for (int i = last + 1; i <= columns_; ++i) cdf[i] = 1;
 
+  int32_t* const guide = &guide_[size_t(row) * size_t(guideSize_ + 1)];
   int column = 0;
-  for (int k = 0; k < kGuide; ++k) {
-    while (cdf[column + 1] <= double(k) / kGuide) ++column;
-    guide_[size_t(row) * (kGuide + 1) + k] = column;
+  for (int k = 0; k < guideSize_; ++k) {
+    while (cdf[column + 1] <= double(k) / guideSize_) ++column;
+    guide[k] = column;
   }
-  guide_[size_t(row) * (kGuide + 1) + kGuide] = last;
+  guide[guideSize_] = last;
   return total;
 }
 

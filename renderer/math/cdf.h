@@ -11,11 +11,14 @@
 namespace chromeball {
 
 // Cumulative distributions of many rows of equal length. In double, so that entries after a weight
-// of 1e12 keep their width. A guide table of kGuide entries for each row (Chen and Asau 1974)
-// leaves one or two steps of search.
+// of 1e12 keep their width. A guide table for each row (Chen and Asau 1974) leaves one or
+// two steps of search.
 class CdfRows {
  public:
-  CdfRows(int rows, int columns);
+  static constexpr int kGuide = 256;
+
+  // `guide`: entries of the guide table of a row; a search takes about columns / guide steps.
+  CdfRows(int rows, int columns, int guide = kGuide);
 
   // Sets a row from its weights (>= 0, finite) and returns their sum. A row of zeros must not be
   // sampled. Different rows may be set concurrently.
@@ -48,13 +51,13 @@ class CdfRows {
   }
 
  private:
-  static constexpr int kGuide = 256;
   const int32_t* guide(int row, double u) const {
-    return &guide_[size_t(row) * (kGuide + 1) + int(u * kGuide)];
+    return &guide_[size_t(row) * size_t(guideSize_ + 1) + size_t(u * guideScale_)];
   }
-  int columns_;
+  int columns_, guideSize_;
+  double guideScale_;  // guideSize_
   std::vector<double> cdf_;     // rows x (columns + 1), each from 0 to 1
-  std::vector<int32_t> guide_;  // rows x (kGuide + 1): the column that contains k / kGuide
+  std::vector<int32_t> guide_;  // rows x (guideSize_ + 1): the column that contains k / guideSize_
 };
 
 // The number that `fraction` of the others, 0 to 1, are below: one of `values`, which are not
