@@ -101,6 +101,29 @@ TEST(Denoise, KeepsDetailsAboveTheNoise) {
             1.1 * squaredError(input.parts[0].mean, texture));
 }
 
+// Where an object begins does not matter far away from there, whatever the tiles and vectors.
+TEST(Denoise, TheEdgeOfAnObjectActsLocally) {
+  const auto lines = [](int x, int y) { return unsigned(x - 66 - y / 8) < 2 ? 0.6f : 0.05f; };
+  const auto errorFrom = [&](int left) {
+    DenoiseInput input = noisy(0.4f, [&](int x, int y) { return x < left ? 0 : lines(x, y); });
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < left; ++x) {
+        for (HalvedImage* image : {&input.albedo, &input.normal}) image->mean.setRgb(x, y, Rgb(0));
+        *input.disparity.mean.at(x, y) = 0;
+      }
+    const Image found = run(input).color;
+    double sum = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 64; x < kWidth; ++x) {
+        const double difference = double(found.at(x, y)[0]) - double(lines(x, y));
+        sum += difference * difference;
+      }
+    return sum;
+  };
+  const double expected = errorFrom(32);
+  for (int left = 33; left <= 40; ++left) EXPECT_NEAR(errorFrom(left) / expected, 1, 0.2) << left;
+}
+
 // A texture that is noise to the eye, but a feature explains it.
 TEST(Denoise, KeepsWhatAFeatureExplains) {
   const auto albedo = [](int x, int y) { return random(uint64_t(y * kWidth + x), 7); };

@@ -68,7 +68,8 @@ void averageArea(const TileWeights& weights, int power, std::span<const Plane> c
       average(weights, power, size_t(y * kWidth + x), channels, area.left + x, area.top + y, means);
 }
 
-// The least area of a tile that has all pixels with isWanted(x, y).
+// The least area of a tile that has all pixels with isWanted(x, y), in whole vectors: a vector
+// beyond the area would be of pixels that other weights filter.
 template <class IsWanted>
 PixelArea boundsOf(const PixelArea& tile, const IsWanted& isWanted) {
   int left = tile.right(), right = tile.left, top = tile.bottom(), bottom = tile.top;
@@ -78,6 +79,9 @@ PixelArea boundsOf(const PixelArea& tile, const IsWanted& isWanted) {
         left = std::min(left, x), right = std::max(right, x + 1);
         top = std::min(top, y), bottom = y + 1;
       }
+  if (left >= right) return {tile.left, tile.top, 0, 0};
+  left -= (left - tile.left) % kLanes;
+  right = std::min(tile.left + (right - tile.left + kLanes - 1) / kLanes * kLanes, tile.right());
   return {left, top, right - left, bottom - top};
 }
 

@@ -20,13 +20,16 @@ static_assert(2 * kPatch <= kLanes);
 static_assert(2 * kPatch + kLanes + TileWeights::kReach <= Plane::kMargin);
 using Padded = std::array<std::array<float, kPaddedWidth>, kPaddedHeight>;
 
+// Pixels in vectors that begin with the area's.
+constexpr int wholeVectors(int width) { return (width + kLanes - 1) / kLanes * kLanes; }
+
 constexpr float kFarthest = 1e4f;  // a larger distance of one pixel counts as this
 
 void pixelDistances(const NoisyPlanes& guide, const PixelArea& area, int dx, int dy,
                     Padded& distances) {
   constexpr int kVectors = kPaddedWidth / kLanes;
   const float scale = 1 / float(guide.values.size());
-  const int vectors = (area.width + 2 * kPatch + kLanes - 1) / kLanes;
+  const int vectors = (wholeVectors(area.width) + 2 * kPatch + kLanes - 1) / kLanes;
   for (int y = 0; y < area.height + 2 * kPatch; ++y) {
     const int row = area.top - kPatch + y, column = area.left - kPatch;
     Float8 sums[kVectors]{};
@@ -53,7 +56,7 @@ void weightsOf(const Padded& distances, const PixelArea& area, TileWeights::Rows
   constexpr int kSide = 2 * kPatch + 1;
   std::array<float, kPaddedWidth> columns{};  // sums
   for (int y = rows.first; y < area.height; y += rows.step) {
-    for (int x = 0; x < area.width + 2 * kPatch; x += kLanes) {
+    for (int x = 0; x < wholeVectors(area.width) + 2 * kPatch; x += kLanes) {
       Float8 sum{};
       for (int i = 0; i < kSide; ++i) sum += load8(&distances[size_t(y + i)][size_t(x)]);
       store8(&columns[size_t(x)], sum);

@@ -28,6 +28,7 @@ struct PixelArea {
 };
 
 // For each pixel p of an area of at most a tile: the weights of the pixels of the window around p.
+// The area consists of whole vectors of kLanes pixels, but for those that the image's edge cuts.
 class TileWeights {
  public:
   static constexpr int kWidth = 32, kHeight = 32;
