@@ -399,6 +399,8 @@ TEST_F(SlowCommandCompare, idleModesAreNamed) {
   };
   expectIdle("importance+glass-shadows", "`render.glass_shadows` has no effect without", "16");
   expectIdle("importance+guide+diffuse-depth:2", "nothing is guided, since", "16");
+  expectIdle("importance+diffuse-depth:9", "`render.max_diffuse_depth` has no effect", "16");
+  expectIdle("importance+specular-depth:9", "`render.max_specular_depth` has no effect", "16");
   expectIdle("importance+guide", "nothing is guided with fewer than", "4");
   const std::string error = errorOf("importance+guide+regularize", "16");
   EXPECT_EQ(error.find("no effect"), std::string::npos) << error;
@@ -441,9 +443,13 @@ TEST_F(SlowCommandCompare, summarisesTheResultInWords) {
   EXPECT_NE(result.out.find("\nOf 1 biased, "), std::string::npos) << result.out;
   EXPECT_EQ(result.out.find(" (biased) "), result.out.rfind(" (biased) ")) << result.out;
   EXPECT_NE(result.out.find(" (biased) "), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("\nReport: " + dir() + "/index.html\n"), std::string::npos)
-      << result.out;
+  const std::string report = "\nReport: " + dir() + "/index.html, exposure ";
+  const size_t at = result.out.find(report);
+  ASSERT_NE(at, std::string::npos) << result.out;
+  EXPECT_NE(result.out.find(" stops (auto, of the reference)\n", at), std::string::npos);
   const std::string page = fileContents(dir() + "/index.html");
+  const float stops = std::stof(result.out.substr(at + report.size()));
+  EXPECT_NE(page.find(fmt::format("value=\"{:g}\"", stops)), std::string::npos) << stops;
   EXPECT_LT(page.find("<li>Use "), page.find("How fast the error falls"));
 }
 

@@ -161,6 +161,25 @@ TEST_F(Exposure, OfPartsIsThatOfTheWhole) {
   EXPECT_TRUE(bytes("z.png") == bytes("b.png"));
 }
 
+TEST_F(Exposure, MergeSaysWhatNeedsAPng) {
+  render({"--guide", "off", "--crop", "0,0,48,32", "-o", folder_ / "all.exr"});
+  const auto errorOf = [&](const std::string& output, Words more) {
+    Words words{"merge", folder_ / "all.exr", "-o", folder_ / output};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words).error;
+  };
+  const auto isNamed = [](const std::string& error, const std::string& option) {
+    return error.find(option + " has no effect: it is for .png") != std::string::npos;
+  };
+  for (const char* option : {"--exposure", "--tonemap", "--white-balance"}) {
+    const std::string name = option;
+    const Words given{name, name == "--tonemap" ? "aces" : name == "--exposure" ? "2" : "3000"};
+    EXPECT_TRUE(isNamed(errorOf("m.hdr", given), option)) << option;
+    EXPECT_FALSE(isNamed(errorOf("m.png", given), option)) << option;
+    EXPECT_EQ(isNamed(errorOf("m.exr", given), option), name != "--exposure");
+  }
+}
+
 // It has no plate whose white it must share.
 TEST_F(Exposure, OfAShadowCatcherFollowsItsLight) {
   const Words catcher{"--shadow-catcher", "ground", "-o", folder_ / "a.png"};

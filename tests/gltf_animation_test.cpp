@@ -243,6 +243,30 @@ TEST(GltfAnimation, ChannelsWithoutANodeAreIgnored) {
   }
 }
 
+// A crowd whose members share their keys is as small as its file.
+TEST(GltfAnimation, ChannelsMayShareASampler) {
+  constexpr int kNodes = 1200, kKeys = 20000;
+  GltfWriter w;
+  std::vector<float> times, values;
+  for (int i = 0; i < kKeys; ++i) {
+    times.push_back(float(i));
+    values.insert(values.end(), {float(i), 0, 0});
+  }
+  json channels = json::array();
+  addTriangle(w, {}, {{"translation", {9, 9, 9}}});
+  for (int i = 0; i < kNodes; ++i) {
+    if (i > 0) w.add("nodes", {{"mesh", 0}});
+    channels.push_back({{"sampler", 0}, {"target", {{"node", i}, {"path", "translation"}}}});
+  }
+  w.add("animations",
+        {{"channels", channels},
+         {"samplers", {{{"input", scalars(w, times)}, {"output", w.vec3s(values)}}}}});
+  const Scene scene = at(w, 3.5);
+  ASSERT_EQ(scene.instances.size(), size_t(kNodes));
+  for (const Instance& instance : scene.instances)
+    EXPECT_NEAR(instance.point(scene.meshes[size_t(instance.mesh)].positions[0]).x, 3.5f, 1e-5f);
+}
+
 TEST(GltfAnimation, InvalidAnimationsAreRejected) {
   const auto errorMessage = [](const json& channel, const json& sampler, const json& node = {}) {
     GltfWriter w;

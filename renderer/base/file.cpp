@@ -32,7 +32,7 @@ constexpr size_t kReadAtOnce = 8 << 20;  // bytes
 // Refuses a zero byte: the system would take the path for the file whose name ends there.
 void refuseNul(const fs::path& path) {
   if (path.native().find('\0') != std::string::npos)
-    throwInput("{}: the file name contains U+0000", path.string());
+    throwInput("{}: the file name contains U+0000", printableName(path.string()));
 }
 
 uint64_t hashOfText(std::string_view text) {

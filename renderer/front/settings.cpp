@@ -47,7 +47,8 @@ std::span<const SettingSection> settingSections() {
        "`fov` or `orthographic`, here or in a `file`. Without either, the model's first camera "
        "renders, or one that frames the model; `view` and `look_at_node` ask for the latter, and "
        "exclude `name`, `file` and `position`: given as options, they take the place of the scene "
-       "file's camera. `fov` and `zoom` apply to any camera. `aperture` and `focus` go together. "
+       "file's camera. `fov` applies to any perspective "
+       "camera, and `zoom` to any. `aperture` and `focus` go together. "
        "They apply to any perspective camera, as do `principal_point` and `distortion`, which a "
        "`file` has itself.",
        cameraRows, true},

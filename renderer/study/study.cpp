@@ -156,8 +156,13 @@ std::vector<std::string_view> Row::settings() const {
   std::vector<std::string_view> names;
   for (const auto& [mode, setting] : {std::pair{Mode::Guide, "render.guide"},
                                       {Mode::Regularize, "render.regularize"},
-                                      {Mode::GlassShadows, "render.glass_shadows"}})
+                                      {Mode::GlassShadows, "render.glass_shadows"},
+                                      {Mode::AmbientOcclusion, "render.ao"},
+                                      {Mode::ReflectionOcclusion, "render.reflection_occlusion"}})
     if (has(mode)) names.push_back(setting);
+  if (diffuseDepth) names.push_back("render.max_diffuse_depth");
+  if (specularDepth) names.push_back("render.max_specular_depth");
+  if (cacheError) names.push_back("render.irradiance_cache");
   return names;
 }
 

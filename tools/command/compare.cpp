@@ -8,8 +8,10 @@
 #include "base/json.h"
 #include "base/json_text.h"
 #include "commands.h"
+#include "display_options.h"
 #include "front/plan_render.h"
 #include "image/io/output_file.h"
+#include "image/tonemap.h"
 #include "interrupt.h"
 #include "lighting/methods.h"
 #include "messages.h"
@@ -218,14 +220,16 @@ void compare(const CompareArguments& a, const Command& command) {
         "{}: [composite] is ignored: strategies are compared on the whole model, without the plate",
         a.scene.scene);
 
-  const auto results = [&] {
-    const RenderSettings& s = description.settings;
-    return studyResults(study, store, loadReference(study, store, s.width, s.height));
-  };
   ReportScene about{fs::path(a.scene.scene).filename().string(),
                     &loaded.probe,
                     description.output.display.exposure,
                     {}};
+  const auto results = [&] {
+    const RenderSettings& s = description.settings;
+    const Reference reference = loadReference(study, store, s.width, s.height);
+    if (description.output.choosesExposure) about.exposure = autoExposure(reference.mean);
+    return studyResults(study, store, reference);
+  };
   for (const std::string& name : study.strategies)
     about.directions.emplace_back(name, sampledDirections(run.strategy(name)));
   const auto write = [&](const StudyResults& r) {
@@ -252,7 +256,10 @@ void compare(const CompareArguments& a, const Command& command) {
   if (verbosity().quiet) return;
   fmt::print("{}", resultsTable(study, all));
   for (const std::string& sentence : verdict(study, all)) fmt::print("{}\n", sentence);
-  fmt::print("Report: {}\n", (fs::path(study.folder) / "index.html").string());
+  fmt::print("Report: {}{}\n", (fs::path(study.folder) / "index.html").string(),
+             description.output.choosesExposure
+                 ? ", " + exposureInWords(about.exposure, "auto, of the reference")
+                 : "");
 }
 
 }  // namespace

@@ -73,9 +73,18 @@ void run(const MergeArguments& arguments) {
     messages.insert(messages.end(), lost.begin(), lost.end());
   }
   addExcluded(whole.result, optionInWords, messages);
+  const auto has = [&](std::string_view extension) {
+    return std::ranges::any_of(arguments.outputs, [&](const std::string& file) {
+      return lowerExtension(file) == extension;
+    });
+  };
+  const bool shows = has(".png");
+  for (const std::string_view name : {"output.exposure", "output.tonemap", "output.white_balance"})
+    if (const bool isForHeader = name == "output.exposure" && has(".exr");
+        !shows && !isForHeader && arguments.display.has(name))
+      addWarning(messages, "{} has no effect: it is for .png; {} holds radiance",
+                 arguments.display.location(name), printableName(arguments.outputs.front()));
   print(messages);
-  const bool shows = std::ranges::any_of(
-      arguments.outputs, [](const std::string& file) { return lowerExtension(file) == ".png"; });
   say("{} samples per pixel of {} part{}, noise {}{}: {}\n", whole.result.samplesPerPixel(),
       parts.paths().size(), parts.paths().size() == 1 ? "" : "s", noiseInWords(finished),
       shows && choosesExposure && ofParts ? ", " + exposureInWords(*ofParts, "from the parts") : "",

@@ -16,7 +16,7 @@ _chromeball() {
     'merge')
       options='--help --output --progress --quiet --exposure --tonemap --white-balance' ;;
     'compare')
-      options='--help --strategies --integrators --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --progress --quiet --animation --animation-time --variant --camera --camera-file --fov --view --look-at --zoom --shutter --shutter-steps --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --ground --drop --single-sided --seed --allow-external --exposure --tonemap --memory --texture-memory --threads' ;;
+      options='--help --strategies --integrators --samples --times --repeats --reference --reference-samples --reference-strategy --baseline --output --progress --quiet --animation --animation-time --variant --camera --camera-file --fov --view --look-at --zoom --shutter --shutter-steps --probe --probe-mapping --probe-rotation --probe-scale --mis --sun-angle --light-from --lights --light-units --size --max-depth --max-diffuse-depth --max-specular-depth --max-transmission-depth --ground --drop --single-sided --seed --allow-external --exposure --memory --texture-memory --threads' ;;
     'bake')
       options='--help --white --output --what --to --size --texel --padding --denoise --no-denoise --keep-materials --progress --quiet --animation --animation-time --variant --camera --probe --probe-mapping --probe-rotation --probe-scale --strategy --sun-angle --light-from --light-units --samples --ao-distance --max-depth --seed --allow-external --memory --texture-memory --threads' ;;
     'basis')

@@ -150,7 +150,6 @@ complete -c chromeball -n '__fish_seen_subcommand_from compare' -l single-sided 
 complete -c chromeball -n '__fish_seen_subcommand_from compare' -l seed -r -d 'Another seed gives another independent image. (default: 0)'
 complete -c chromeball -n '__fish_seen_subcommand_from compare' -l allow-external -d 'Lets models name files outside their own folders'
 complete -c chromeball -n '__fish_seen_subcommand_from compare' -l exposure -r -d 'Exposure of a .png: radiance times 2^STOPS. auto: chosen from the surfaces in view, and printed; for a sequence, from its first frame. A composite with a plate has 0, and no auto. (default: auto)'
-complete -c chromeball -n '__fish_seen_subcommand_from compare' -l tonemap -r -d 'Tone operator of a .png. Names: none, reinhard, aces, neutral, filmic. (default: none)'
 complete -c chromeball -n '__fish_seen_subcommand_from compare' -l memory -r -d 'Refuses images and scenes that take more than this. (default: 0.8 times what the machine and its limits allow)'
 complete -c chromeball -n '__fish_seen_subcommand_from compare' -l texture-memory -r -d 'Memory for textures; less than 0.0105 counts as that. If they need more, they go to a temporary file in $TMPDIR, of which so much is kept in memory. It does not change the image. (default: all textures are in memory)'
 complete -c chromeball -n '__fish_seen_subcommand_from compare' -l threads -r -d 'Number of threads; 0 is one for each core. It does not change the image. (default: 0)'

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "base/text.h"
@@ -175,6 +177,25 @@ void checkWeights(const GltfFile& file, const tinygltf::Node& node, const Track&
 
 }  // namespace
 
+struct AnimationTracks {
+  // By animation, sampler and componentsOf(); channels may share a sampler.
+  std::map<std::array<int, 3>, Track> read;
+};
+
+namespace {
+
+const Track& trackOf(GltfFile& file, size_t animation, const tinygltf::AnimationChannel& channel,
+                     const std::string& user) {
+  if (!file.tracks) file.tracks = std::make_shared<AnimationTracks>();
+  auto& read = file.tracks->read;
+  const std::array key{int(animation), channel.sampler, componentsOf(channel.target_path)};
+  const auto found = read.find(key);
+  if (found != read.end()) return found->second;
+  return read.emplace(key, readTrack(file, animation, channel, user)).first->second;
+}
+
+}  // namespace
+
 std::string animationName(const std::vector<tinygltf::Animation>& animations, size_t i) {
   return animations[i].name.empty() ? fmt::format("{}", i) : animations[i].name;
 }
@@ -208,7 +229,7 @@ void applyAnimation(GltfFile& file, const AnimationTime& when) {
           "and scale can be animated",
           where, channel.target_node);
 
-    const Track track = readTrack(file, index, channel, where);
+    const Track& track = trackOf(file, index, channel, where);
     if (isWeights) checkWeights(file, node, track);
     std::vector<double>& target = isWeights          ? node.weights
                                   : track.isRotation ? node.rotation
@@ -222,9 +243,11 @@ void applyAnimation(GltfFile& file, const AnimationTime& when) {
 std::vector<double> changesAfter(GltfFile& file, const AnimationTime& when, double seconds) {
   const size_t index = findAnimation(file, when);
   std::set<double> changes;
+  std::set<const Track*> seen;
   for (const tinygltf::AnimationChannel& channel : file.model.animations[index].channels) {
     if (channel.target_node == -1 || componentsOf(channel.target_path) == 0) continue;
-    const Track track = readTrack(file, index, channel, fmt::format("animations[{}]", index));
+    const Track& track = trackOf(file, index, channel, fmt::format("animations[{}]", index));
+    if (!seen.insert(&track).second) continue;
     const std::vector<double> opening = valueAt(file, track, when.seconds);
     const auto addIfOther = [&](double time) {
       if (time > when.seconds && time < when.seconds + seconds &&

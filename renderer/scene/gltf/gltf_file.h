@@ -5,6 +5,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
@@ -29,6 +30,8 @@ struct ImageSource {
 // A string from the file for use in a message: control characters become '?'.
 std::string oneLine(std::string text);
 
+struct AnimationTracks;
+
 class GltfFile {
  public:
   // Reads the file and its buffers. Throws InputError if it is not glTF 2.0, requires an
@@ -38,6 +41,7 @@ class GltfFile {
   tinygltf::Model model;  // without buffers and images
   std::vector<ImageSource> images;
   std::vector<bool> animated;  // by node: whether the chosen animation sets it; empty: none
+  std::shared_ptr<AnimationTracks> tracks;  // of scene/gltf/animation.cpp: samplers that were read
 
   // The paths of the file itself and of the files of its buffers and images.
   const std::vector<std::string>& files() const { return files_; }
