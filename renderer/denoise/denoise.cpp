@@ -81,13 +81,14 @@ HalfGuides guidesOf(const HalvedImage& image, float scale) {
 
 // Features without their own noise, which is correlated with the image's noise where a pixel sees
 // several surfaces at random (edges, lenses, transparency): a regression would keep it.
-FeaturePlanes featuresOf(const DenoiseInput& input, const std::atomic<bool>& stop) {
+FeaturePlanes featuresOf(const DenoiseInput& input, Scratch& scratch,
+                         const std::atomic<bool>& stop) {
   FeaturePlanes features;
   size_t at = 0;
   for (const HalvedImage* image : {&input.albedo, &input.normal, &input.disparity}) {
     const bool isRelative = image == &input.disparity;
     const float scale = isRelative ? normalization({image, 1}) : 1;
-    const HalfChannels halves = averageHalves(guidesOf(*image, scale), stop);
+    const HalfChannels halves = averageHalves(guidesOf(*image, scale), scratch, stop);
     for (size_t c = 0; c < halves[0].size(); ++c, ++at) {
       const Plane &a = halves[0][c], &b = halves[1][c];
       const Plane values =
@@ -142,12 +143,13 @@ RgbPlanes noiseOf(const HalvedImage& image, float scale) {
 
 // Two passes with two bandwidths each: the second computes its weights from the narrower result of
 // the first, and averages with them, too. `progress` receives the fraction.
-Selection denoise(const Component& component, const FeaturePlanes& features,
+Selection denoise(const Component& component, const FeaturePlanes& features, Scratch& scratch,
                   const Progress& progress, const std::atomic<bool>& stop) {
-  const auto first = filterHalves(component, guidesOf(component), features, {1, 8}, 0, stop);
+  const auto first =
+      filterHalves(component, guidesOf(component), features, {1, 8}, 0, scratch, stop);
   progress(0.5);
-  const auto second =
-      filterHalves(component, guidesOf(first.regressions[1], component), features, {1, 4}, 4, stop);
+  const auto second = filterHalves(component, guidesOf(first.regressions[1], component), features,
+                                   {1, 4}, 4, scratch, stop);
   progress(1);
   return best({filtered(component, second.regressions[0], FilterKind::Wide),
                filtered(component, second.regressions[1], FilterKind::Narrow),
@@ -168,7 +170,8 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
                                                  const Progress& progress,
                                                  const std::atomic<bool>& stop) {
   const float scale = normalization(input.parts);
-  const FeaturePlanes features = featuresOf(input, stop);
+  Scratch scratch;
+  const FeaturePlanes features = featuresOf(input, scratch, stop);
   std::vector<DenoisedPart> results;
   for (const HalvedImage& part : input.parts) {
     const double before = double(results.size()), count = double(input.parts.size());
@@ -178,7 +181,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
     const Plane used = makePlaneLike(
         squaredBias, [&](int x, int y) { return isEmpty(input, part, x, y) ? 0.0f : 1.0f; });
     const Selection found = denoise(
-        componentOf(std::move(halves), used), features,
+        componentOf(std::move(halves), used), features, scratch,
         [&](double fraction) { progress((before + fraction) / count); }, stop);
     if (stop) return std::nullopt;
     const int width = part.mean.width, height = part.mean.height;
@@ -219,7 +222,7 @@ Denoised sumOf(const std::vector<DenoisedPart>& parts) {
 }
 
 double denoiseBytes(int width, int height, int parts) {
-  const double planes = 159 + 6 * parts;  // that exist at the same time, at most
+  const double planes = 167 + 6 * parts;  // that exist at the same time, at most
   return planes * sizeof(float) * (width + 2.0 * Plane::kMargin) * (height + 2.0 * Plane::kMargin);
 }
 

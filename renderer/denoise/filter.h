@@ -5,6 +5,7 @@
 
 #include <atomic>
 
+#include "base/parallel.h"
 #include "denoise/regression.h"
 
 namespace chromeball {
@@ -23,10 +24,13 @@ using HalfGuides = std::array<NoisyPlanes, 2>;
 
 HalfGuides guidesOf(const Component& component);
 
+using Scratch = PerThread<TileWeights>;
+
 // The weighted means of the channels of each half, with weights from the other.
 using HalfChannels = std::array<std::vector<Plane>, 2>;
 // Pixels with negligible noise may stay as they are.
-HalfChannels averageHalves(const HalfGuides& halves, const std::atomic<bool>& stop);
+HalfChannels averageHalves(const HalfGuides& halves, Scratch& scratch,
+                           const std::atomic<bool>& stop);
 
 constexpr int kBandwidths = 2;
 
@@ -41,7 +45,7 @@ struct FilteredHalves {
 FilteredHalves filterHalves(const Component& component, const HalfGuides& guides,
                             const FeaturePlanes& features,
                             const std::array<int, kBandwidths>& powers, int averagePower,
-                            const std::atomic<bool>& stop);
+                            Scratch& scratch, const std::atomic<bool>& stop);
 
 // Limits pixels with so much light that a filter would turn them into bright spots.
 

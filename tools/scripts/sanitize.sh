@@ -77,7 +77,8 @@ mkdir -p "$reports"
 export ASAN_OPTIONS=log_path=$reports/report
 export LSAN_OPTIONS=suppressions=$suppressions/leak.txt:print_suppressions=0
 export UBSAN_OPTIONS=print_stacktrace=1
-export TSAN_OPTIONS=suppressions=$suppressions/thread.txt:log_path=$reports/report
+# A long history: a report whose earlier stack is forgotten cannot be told from a suppressed one.
+export TSAN_OPTIONS=suppressions=$suppressions/thread.txt:log_path=$reports/report:history_size=7
 
 tools/scripts/run_tests.sh "$build" "$@" | tee "$build/tests.log" || true
 read -r passed _ failed _ < <(tail -n 1 "$build/tests.log")
