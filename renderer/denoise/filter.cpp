@@ -195,7 +195,7 @@ FilteredHalves filterHalves(const Component& component, const HalfGuides& guides
         boundsOf(tile, [&](int x, int y) { return component.used.at(x, y) != 0; });
     if (used.empty()) return;
     // Every second row has the centres of windows, other rows in each half: 1.7 times faster, with
-    // 1% more error on average. Each window predicts 15 rows.
+    // the same error (docs/measured/results.md). Each window predicts 15 rows.
     const int first = std::min((used.top + int(half)) % 2, used.height - 1);
     const TileWeights::Rows all, centres{first, 2};
     TileWeights& weights = scratch.local();

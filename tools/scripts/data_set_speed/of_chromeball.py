@@ -12,8 +12,9 @@ class Scene:
     def render(self, i, position):
         s = self.settings
         camera = cb.Camera.look_at(position, s.target, fov=s.fov)
-        image = cb.render(self.model, self.probe, camera, size=(s.size, s.size), samples=s.samples, denoise=True,
-                          max_depth=s.depth, layers=list(LAYERS), seed=i, threads=s.threads, **s.options)
+        image = cb.render(self.model, self.probe, camera, size=(s.size, s.size), samples=s.samples,
+                          max_depth=s.depth, layers=list(LAYERS), seed=i, threads=s.threads,
+                          exposure=0, **{"denoise": True} | s.options)
         arrays = [image.color] + [image.layers[name] for name in LAYERS]
         assert all(a.shape[:2] == (s.size, s.size) for a in arrays)
         if i == 0:

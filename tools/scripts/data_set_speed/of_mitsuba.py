@@ -57,8 +57,10 @@ class Glb:
                 "metallic": self.texture(rough, 2) if rough else surface.get("metallicFactor", 1.0),
                 "specular": 0.5 * extensions.get("KHR_materials_specular", {}).get("specularFactor", 1.0)}
         if "normalTexture" in m:
-            normals = {"type": "bitmap", "bitmap": self.image(m["normalTexture"]["index"], True), "raw": True}
-            bsdf = {"type": "normalmap", "normalmap": normals, "bsdf": bsdf}
+            normals = np.array(self.image(m["normalTexture"]["index"], True))
+            normals[..., 1] = 1 - normals[..., 1]  # glTF's v points down, and its bitangent up
+            texture = {"type": "bitmap", "bitmap": mi.Bitmap(normals), "raw": True}
+            bsdf = {"type": "normalmap", "normalmap": texture, "bsdf": bsdf}
         strength = extensions.get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
         glow = [strength * x for x in m.get("emissiveFactor", [0, 0, 0])]
         return {"type": "twosided", "bsdf": bsdf}, glow, m.get("emissiveTexture")
@@ -91,9 +93,7 @@ class Glb:
         parameters["vertex_positions"] = np.ravel(positions @ linear.T + to_world[:3, 3]).astype(np.float32)
         parameters["vertex_normals"] = np.ravel(turned / np.linalg.norm(turned, axis=1, keepdims=True)).astype(np.float32)
         if "TEXCOORD_0" in attributes:
-            texels = np.array(self.accessor(attributes["TEXCOORD_0"]))
-            texels[:, 1] = 1 - texels[:, 1]
-            parameters["vertex_texcoords"] = np.ravel(texels).astype(np.float32)
+            parameters["vertex_texcoords"] = np.ravel(self.accessor(attributes["TEXCOORD_0"])).astype(np.float32)
         parameters["faces"] = np.ravel(faces).astype(np.uint32)
         parameters.update()
         return mesh
