@@ -317,7 +317,7 @@ TEST_F(SceneFileTest, OutOfRangeNamesKeyAndLine) {
 }
 
 TEST_F(SceneFileTest, CameraHasEitherANameOrAPosition) {
-  expectError("[camera]\nname = 'A'\nfov = 30\n", 4, {"`name`", "`fov`"});
+  expectError("[camera]\nname = 'A'\nup = [0, 1, 0]\n", 4, {"`name`", "`up`"});
   expectError("\n[camera]\nposition = [0,0,1]\n", 3, {"look_at"});
   expectError("[camera]\nposition = [0,0,1]\nlook_at = [0,0,1]\n", 2, {"same point"});
   expectError("[camera]\nposition=[0,0,1]\nlook_at=[0,0,0]\nup=[0,0,1]\n", 2, {"parallel"});
