@@ -223,6 +223,8 @@ TEST(Capabilities, EverySettingInVainIsNamed) {
   delta.lighting.strategy = "median-cut:8";
   D suns = plain();
   suns.lighting.strategy = "suns";
+  D ofSuns = plain();
+  ofSuns.lighting.from = LightFrom::Suns;
   D inMemory = plain();
   inMemory.probe.file.reset();
   inMemory.probe.map = std::make_shared<const Image>(2, 1, 3);
@@ -231,7 +233,7 @@ TEST(Capabilities, EverySettingInVainIsNamed) {
   for (const Dependence& d : dependences()) {
     const std::string name(d.setting);
     std::vector<std::vector<std::string>> told;
-    for (D* description : {&open, &inVain, &mapped, &flat, &delta, &suns, &inMemory})
+    for (D* description : {&open, &inVain, &mapped, &flat, &delta, &suns, &ofSuns, &inMemory})
       for (const SceneContents& contents : {nothing, probe, all}) {
         EXPECT_EQ(idleSettings(*description, contents), std::vector<std::string>{}) << name;
         description->origins.set(name, "scene.toml:7");

@@ -209,6 +209,28 @@ TEST(SlowCommandAssemble, FindsTheImageCircleInASquarePicture) {
   }
 }
 
+// The pictures that `probe convert` writes: the circle fills them, and lights the pixels that it
+// cuts as a whole, so that their outline is another one.
+TEST(SlowCommandAssemble, PicturesOfProgramsAreCutToTheirCircle) {
+  const TemporaryFolder folder;
+  writeImage(folder / "map.exr", studio());
+  using Words = std::vector<std::string>;
+  for (const std::string mapping : {"fisheye", "mirror-ball"}) {
+    Words conversion{"probe", "convert", folder / "map.exr", folder / "p.exr",
+                     "--to",  mapping,   "--size",           "128x128"};
+    if (mapping == "mirror-ball") conversion.push_back("--flip");
+    run(conversion);
+    const auto assembled = [&](Words more) {
+      Words words{"probe", "assemble", folder / "p.exr", "-o", folder / "o.exr", "--size", "32x16"};
+      if (mapping == "fisheye") words.insert(words.end(), {"--from", "fisheye"});
+      words.insert(words.end(), more.begin(), more.end());
+      run(words);
+      return readImage(folder / "o.exr").texels;
+    };
+    EXPECT_EQ(assembled({}), assembled({"--circle", "64,64,64"})) << mapping;
+  }
+}
+
 // A lens that looks up has its camera below: elevation -90. With the other sign the sky would be
 // below the horizon.
 TEST(SlowCommandAssemble, WarnsOfAProbeThatIsUpsideDown) {

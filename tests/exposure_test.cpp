@@ -161,6 +161,29 @@ TEST_F(Exposure, OfPartsIsThatOfTheWhole) {
   EXPECT_TRUE(bytes("z.png") == bytes("b.png"));
 }
 
+// A checkpoint is a part.
+TEST_F(Exposure, OfACheckpointIsThatOfTheRender) {
+  render({"-o", folder_ / "a.png"});
+  for (const Words& more : {Words{}, Words{"--denoise"}}) {
+    Words words{"--checkpoint", folder_ / "c.exr", "-o", folder_ / "a.exr"};
+    words.insert(words.end(), more.begin(), more.end());
+    render(words);
+    const std::string merged =
+        run({"merge", folder_ / "c.exr", "-o", folder_ / "m.png", "-o", folder_ / "m.exr"}).out;
+    EXPECT_NE(stopsIn(merged), "") << merged;
+    const Metadata header = readExrMetadata(folder_ / "m.exr");
+    EXPECT_EQ(header.contains("denoise"), !more.empty());
+    if (header.contains("denoise")) {
+      EXPECT_EQ(std::get<std::string>(header.at("denoise")), "true");
+    }
+    EXPECT_EQ(bytes("m.png") == bytes("a.png"), more.empty());
+    std::filesystem::remove(folder_ / "c.exr");
+  }
+  const CommandResult given =
+      render({"--checkpoint", folder_ / "c.exr", "-o", folder_ / "b.exr", "--exposure", "2"});
+  EXPECT_EQ(given.error.find("no effect"), std::string::npos) << given.error;
+}
+
 TEST_F(Exposure, MergeSaysWhatNeedsAPng) {
   render({"--guide", "off", "--crop", "0,0,48,32", "-o", folder_ / "all.exr"});
   const auto errorOf = [&](const std::string& output, Words more) {

@@ -49,6 +49,24 @@ TEST(FindCircle, InALargePicture) {
   expectCircle(photographOf(scene, 2000, 1500, circle), circle, 0.2, "large");
 }
 
+// Programs that fill the pixels whose centres are inside have no pixel in between, and no noise.
+TEST(FindCircle, OfADiscOfWholePixels) {
+  for (const double radius : {31.71, 43.47, 48.71, 51.74, 54.37, 60.71, 73.65}) {
+    const int side = int(2 * radius + 40);
+    const Circle circle{{side / 2 + 1.3, side / 2 - 2.1}, radius};
+    Image image(side, side, 3);
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        const double share = glm::distance(circle.centre, dvec2(x + 0.5, y + 0.5)) / radius;
+        if (share < 1)
+          image.setRgb(x, y,
+                       Rgb(1, 0.8f, 0.6f) * float(0.3 + 0.5 * std::sqrt(1 - share * share) +
+                                                  0.2 * std::sin(x / 7.0) * std::cos(y / 9.0)));
+      }
+    expectCircle(image, circle, 0.1, fmt::format("radius {}", radius).c_str());
+  }
+}
+
 // A ball before a round table, whose outline is longer: the ball must be named.
 TEST(FindCircle, NamesASecondCircle) {
   const Probe studio(studioProbe({512, 256}));

@@ -238,6 +238,7 @@ TEST(Gltf, CamerasHaveTheFramesOfTheirNodes) {
   EXPECT_TRUE(scene.cameras[1].orthographic);
   EXPECT_EQ(scene.cameras[1].name, "plan");
   EXPECT_EQ(scene.cameras[1].halfHeight, 2);
+  EXPECT_NEAR(w.load({glm::mat3(0.5f), {}}).cameras[1].halfHeight, 1, 1e-6) << "of its unit";
   EXPECT_EQ(scene.cameras[1].aspect, 2);
 }
 

@@ -143,6 +143,19 @@ TEST(Image, HdrMatchesReferenceDecoder) {
   }
 }
 
+// Radiance's programs note their command lines.
+TEST(Image, HdrHeadersMayHaveLongLines) {
+  const TemporaryFolder folder;
+  const auto withLine = [&](size_t length) {
+    return "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\npcomb " + std::string(length, 'x') +
+           "\n\n-Y 1 +X 1\n" + std::string("\x80\x80\x80\x81", 4);
+  };
+  write(folder / "a.hdr", withLine(100'000));
+  EXPECT_EQ(readImage(folder / "a.hdr").width, 1);
+  write(folder / "a.hdr", withLine(2 << 20));
+  expectInputError(folder / "a.hdr", "a line of the Radiance header has more than");
+}
+
 TEST(Image, DamagedHdrIsRejected) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.hdr", head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";

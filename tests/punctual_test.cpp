@@ -245,6 +245,7 @@ TEST(GltfLights, AreTransformedByTheirNodes) {
   EXPECT_NEAR(glm::distance(lights[0].direction, vec3(0, 1, 0)), 0, 1e-6);
   EXPECT_NEAR(glm::distance(683.0f * lights[0].intensity, Rgb(3, 1.5f, 0)), 0, 1e-5);
   EXPECT_EQ(lights[0].range, 7);
+  EXPECT_NEAR(w.load({glm::mat3(2), {}}).lights[0].range, 14, 1e-5) << "a change of the unit";
   EXPECT_NEAR(lights[0].innerCone, 1 - std::cos(0.1), 1e-8);
   EXPECT_NEAR(lights[0].outerCone, 1 - std::cos(0.2), 1e-8);
   EXPECT_EQ(lights[1].kind, Kind::Directional);

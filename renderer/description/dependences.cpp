@@ -37,6 +37,7 @@ bool hasOcclusionLayer(const D& d) {
 
 bool hasProbe(const D&, const SceneContents& c) { return c.hasProbe; }
 bool hasModelLights(const D&, const SceneContents& c) { return c.hasModelLights; }
+bool isNotOfSuns(const D& d, const SceneContents&) { return d.lighting.from != LightFrom::Suns; }
 bool hasPaths(const D& d, const SceneContents&) { return followsPaths(d); }
 
 // A shadow catcher of nodes has a ground only if it names that. `drop` takes its height from it.
@@ -95,7 +96,9 @@ constexpr std::array kDependences = {
                         (c.hasProbeSuns && d.lighting.from != LightFrom::Rest);
                }},
     Dependence{"lighting.lights", "punctual lights of the models", hasModelLights},
+    Dependence{"lighting.lights", "more light than that of suns", isNotOfSuns},
     Dependence{"lighting.light_units", "punctual lights of the models", hasModelLights},
+    Dependence{"lighting.light_units", "more light than that of suns", isNotOfSuns},
     Dependence{"render.guide", "light of a probe",
                [](const D& d, const SceneContents& c) {
                  return d.settings.guiding != Guiding::On ||

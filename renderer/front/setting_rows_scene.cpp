@@ -20,8 +20,10 @@ std::vector<Setting> modelRows() {
        .type = Compound,
        .form = "a number other than 0, or three",
        .absent = "1",
-       .help = "Scales the model along X, Y and Z: a change of its unit, which "
-               "distances of absorption in glass follow."},
+       .help =
+           "Scales the model along X, Y and Z: a change of its unit, which absorption in glass, "
+           "the range of lamps and the height of orthographic cameras follow (by the cube root "
+           "of the volume's factor)."},
       {.key = "animation",
        .argument = "NAME",
        .type = Name,

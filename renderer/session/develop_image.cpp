@@ -106,7 +106,8 @@ RenderSettings meterSettings(RenderSettings settings) {
 bool needsExposure(const RenderDescription& description) {
   const auto isPng = [](const std::string& file) { return lowerExtension(file) == ".png"; };
   return description.output.choosesExposure &&
-         (description.settings.isPart() || std::ranges::any_of(description.output.files, isPng));
+         (description.settings.isPart() || description.run.checkpoint ||
+          std::ranges::any_of(description.output.files, isPng));
 }
 
 float meteredExposure(const LoadedScene& loaded, const PreparedScene& prepared,

@@ -222,12 +222,13 @@ Messages checkOutputs(const RenderDescription& description) {
     if (description.origins.has(setting))
       addWarning(messages, "{} has no effect: {}", namedOrigin(description, setting), why);
   };
-  // Keys of a scene file are for whatever it is rendered to. A part keeps its exposure for the
-  // whole.
+  // Keys of a scene file are for whatever it is rendered to. A part and a checkpoint, which is one,
+  // keep their exposure for the whole.
+  const bool isForWhole = description.settings.isPart() || description.run.checkpoint;
   for (const char* name :
        {"output.tonemap", "output.white_balance", "output.develop", "output.exposure"})
     if (!has(".png") && description.origins.of(name).starts_with("--") &&
-        !(name == std::string_view("output.exposure") && description.settings.isPart()))
+        !(name == std::string_view("output.exposure") && isForWhole))
       warn(name, fmt::format("it is for .png; {} holds radiance", files.front()));
   const bool isForLens = description.output.develop.lens &&
                          description.output.layers == std::vector<std::string>{"depth"};

@@ -141,6 +141,20 @@ std::optional<Circle> circleOfSquare(const Image& image) {
   return Circle{dvec2(0.5 * image.width), 0.5 * image.width};
 }
 
+// Whether the picture has been cut to the circle that was found: nothing is around it. Programs
+// write such pictures, and light the pixels that the circle cuts as a whole.
+bool isCutTo(const Circle& circle, const Circle& found, const Image& image) {
+  constexpr double kNear = 1.5;  // pixels
+  const dvec2 apart = glm::abs(found.centre - circle.centre);
+  if (std::max({apart.x, apart.y, std::fabs(found.radius - circle.radius)}) > kNear) return false;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (glm::length(dvec2(x + 0.5, y + 0.5) - circle.centre) > circle.radius + kNear &&
+          !isBlack(image.rgb(x, y)))
+        return false;
+  return true;
+}
+
 // A circle within a fisheye's picture may also be the outline of a lamp.
 bool mayBeImageCircle(const Circle& circle, const Image& image) {
   return circle.radius > 0.25 * std::min(image.width, image.height);
@@ -153,8 +167,8 @@ void setCircle(const std::string& given, bool isFisheye, AssemblyPhotograph& pho
   } else {
     std::optional<FoundCircle> found = findCircle(image);
     if (isFisheye && found && !mayBeImageCircle(found->circle, image)) found.reset();
-    const std::optional<Circle> filling = isFisheye ? circleOfSquare(image) : std::nullopt;
-    if (!found && filling) {
+    const std::optional<Circle> filling = circleOfSquare(image);
+    if (filling && (found ? isCutTo(*filling, found->circle, image) : isFisheye)) {
       photograph.circle = *filling;
       return;
     }
@@ -181,7 +195,7 @@ void addAssembleOptions(Command command, AssembleArguments& arguments) {
       .addOption("--circle", arguments.circles,
                  "X,Y,RADIUS[;...]: the outline of each ball, in pixels from the top left corner; "
                  "else, or for auto, it is found; a fisheye's square picture without one is filled "
-                 "by its circle")
+                 "by its circle, and a square picture that is black around that is cut to it")
       .onePerName();
   command
       .addOption("--mask", arguments.masks,

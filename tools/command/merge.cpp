@@ -62,6 +62,7 @@ void run(const MergeArguments& arguments) {
       whole.part.plan, whole.result, [&](double fraction) { bar.update(fraction); }, never);
   finished.image.metadata = sampleMetadata(finished, whole.result);
   finished.image.metadata.merge(wholeMetadata(parts));
+  if (finished.denoised) finished.image.metadata["denoise"] = "true";  // the parts are not yet
   auto [transform, choosesExposure] = planDisplay(arguments.display);
   // The parts' exposure; of a composite they have none.
   const std::optional<float> ofParts = exposureIn(finished.image.metadata);

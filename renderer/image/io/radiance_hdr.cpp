@@ -51,7 +51,9 @@ class Reader {
   std::string_view line() {
     const std::string_view rest = textOf(bytes_).substr(position_);
     const size_t end = rest.find('\n');
-    if (end > 4096) fail("the Radiance header does not end");  // npos too
+    if (end == std::string_view::npos) fail("the Radiance header does not end");
+    constexpr size_t kLongest = 1 << 20;  // programs note their command lines in the header
+    if (end > kLongest) fail("a line of the Radiance header has more than 2^20 characters");
     position_ += end + 1;
     return rest.substr(0, end);
   }

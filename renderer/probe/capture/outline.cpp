@@ -240,12 +240,19 @@ std::optional<Outline> fitVariances(const Image& image, const Circle& start, Rim
 
 }  // namespace
 
+// A side without noise may fit so well that all pixels with an error, as those that the outline
+// cuts where a program fills whole pixels, count for the other side: then the outline with one
+// variance, which as many arcs support, is another one.
 std::optional<Outline> fitOutline(const Image& image, const Circle& start) {
-  constexpr double kMoreSupport = 0.05;
+  constexpr double kMoreSupport = 0.05, kApart = 0.3;
   const double blur = likeliestBlur(image, start);
   const auto two = fitVariances(image, start, {.blur = blur});
   const auto one = fitVariances(image, start, {.blur = blur, .hasOneVariance = true});
-  return one && two && one->support > two->support + kMoreSupport ? one : two;
+  if (!one || !two) return two;
+  const bool isOther = std::fabs(one->circle.radius - two->circle.radius) > kApart;
+  const bool isBetter =
+      isOther ? one->support >= two->support : one->support > two->support + kMoreSupport;
+  return isBetter ? one : two;
 }
 
 }  // namespace chromeball

@@ -70,11 +70,15 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
   }
 }
 
-// Distances in media scale with the model.
-void scaleMedia(const Transform& placement, Scene& scene) {
+// Lengths that nodes do not scale (KHR_materials_volume, KHR_lights_punctual, cameras) do scale with
+// the whole model, as with a change of its unit.
+void scaleLengths(const Transform& placement, Scene& scene) {
   const float scale = std::cbrt(std::fabs(glm::determinant(placement.linear)));
+  if (!(scale > 0)) return;
   for (Material& m : scene.materials)
-    if (m.extended && scale > 0) m.extended->attenuation /= scale;
+    if (m.extended) m.extended->attenuation /= scale;
+  for (PunctualLight& light : scene.lights) light.range *= scale;
+  for (Camera& camera : scene.cameras) camera.halfHeight *= scale;
 }
 
 // If the file has meshes but no nodes, adds a node for each mesh.
@@ -190,8 +194,8 @@ Scene loadGltf(const std::string& path, const Transform& placement, const Warn& 
   const NodeTree tree = readNodes(file, placement, choice.origin);
   Scene scene = readInstances(file, tree, choice.cache);
   readCameras(file, tree, scene);
-  scaleMedia(placement, scene);
   scene.lights = readLights(file, tree, choice.lightUnits);
+  scaleLengths(placement, scene);
   if (choice.environment) scene.environment = readEnvironment(file);
   scene.files = file.files();
   scene.isAnimated = isAnimated;
