@@ -55,7 +55,7 @@ class CdfRows {
     return &guide_[size_t(row) * size_t(guideSize_ + 1) + size_t(u * guideScale_)];
   }
   int columns_, guideSize_;
-  double guideScale_;  // guideSize_
+  double guideScale_;           // guideSize_
   std::vector<double> cdf_;     // rows x (columns + 1), each from 0 to 1
   std::vector<int32_t> guide_;  // rows x (guideSize_ + 1): the column that contains k / guideSize_
 };

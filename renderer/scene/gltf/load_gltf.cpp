@@ -70,8 +70,8 @@ void readCameras(GltfFile& file, const NodeTree& tree, Scene& scene) {
   }
 }
 
-// Lengths that nodes do not scale (KHR_materials_volume, KHR_lights_punctual, cameras) do scale with
-// the whole model, as with a change of its unit.
+// Lengths that nodes do not scale (KHR_materials_volume, KHR_lights_punctual, cameras) do scale
+// with the whole model, as with a change of its unit.
 void scaleLengths(const Transform& placement, Scene& scene) {
   const float scale = std::cbrt(std::fabs(glm::determinant(placement.linear)));
   if (!(scale > 0)) return;
