@@ -8,7 +8,6 @@ namespace chromeball {
 CdfRows::CdfRows(int rows, int columns, int guide)
     : columns_(columns),
       guideSize_(guide),
-      guideScale_(guide),
       cdf_(longArray<double>(size_t(rows) * (columns + 1))),
       guide_(longArray<int32_t>(size_t(rows) * size_t(guide + 1))) {}
 

@@ -52,10 +52,9 @@ class CdfRows {
 
  private:
   const int32_t* guide(int row, double u) const {
-    return &guide_[size_t(row) * size_t(guideSize_ + 1) + size_t(u * guideScale_)];
+    return &guide_[size_t(row) * size_t(guideSize_ + 1) + size_t(u * guideSize_)];
   }
   int columns_, guideSize_;
-  double guideScale_;           // guideSize_
   std::vector<double> cdf_;     // rows x (columns + 1), each from 0 to 1
   std::vector<int32_t> guide_;  // rows x (guideSize_ + 1): the column that contains k / guideSize_
 };

@@ -59,7 +59,7 @@ struct Study {
 
   // The smallest budget in samples; kMaxSamples if all are in seconds.
   uint32_t leastSamples() const;
-  uint32_t mostSamples() const;  // of a render without a limit of time
+  uint32_t mostSamples() const;  // kMaxSamples if a budget is of time
   RenderKey referencePart(int part) const;
   // All renders, in the order of rendering. Strategies alternate, so that a machine whose speed
   // drifts does not favour any of them.
