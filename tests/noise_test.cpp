@@ -374,6 +374,15 @@ TEST(Noise, ToleratesPixelsWithoutAValidSample) {
   EXPECT_NEAR(quantiles.p95, 0.1, 1e-3);
 }
 
+// A person asks how noisy the objects are: a plate or a black background, of any size, is not.
+TEST(Noise, QuantilesLeaveOutPixelsWithoutNoise) {
+  Image relative(10, 10, 1);
+  for (size_t i = 90; i < 100; ++i) relative.texels[i] = 0.01f * float(i - 89);
+  EXPECT_NEAR(noiseQuantiles(relative).median, 0.05, 1e-6);
+  EXPECT_NEAR(noiseQuantiles(relative).p95, 0.09, 1e-6);
+  EXPECT_EQ(noiseQuantiles(Image(4, 4, 1)).median, 0);
+}
+
 // Samples that are all equal have no error, however their sums round, also beside rare light.
 TEST(Noise, IsZeroForEqualSamplesBesideRareLight) {
   std::mt19937 random(3);

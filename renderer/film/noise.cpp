@@ -212,6 +212,7 @@ NoiseQuantiles noiseQuantiles(const Image& relativeErrors) {
   std::vector<float> known = relativeErrors.texels;
   std::erase_if(known, [](float error) { return std::isnan(error); });
   if (known.empty()) return {kNan, kNan};
+  if (std::erase(known, 0.0f); known.empty()) return {0, 0};
   const auto quantile = [&](double fraction) {
     const auto at = known.begin() + std::ptrdiff_t(fraction * double(known.size() - 1));
     std::nth_element(known.begin(), at, known.end());

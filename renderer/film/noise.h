@@ -55,8 +55,10 @@ Noise estimateNoise(const PixelErrors& errors);
 // and for all of a black image.
 Image relativeErrors(const PixelErrors& errors, const std::vector<glm::dvec4>& squaredErrors);
 
+// Over the pixels that have noise: not NaN, and not 0, which a plate, a black background and a
+// light seen directly have. NaN if all are NaN, 0 if none has noise.
 struct NoiseQuantiles {
-  double median, p95;  // over the pixels that are not NaN; NaN if all are
+  double median, p95;
 };
 NoiseQuantiles noiseQuantiles(const Image& relativeErrors);
 
