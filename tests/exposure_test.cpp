@@ -46,9 +46,23 @@ TEST(AutoExposure, FewPixelsDecideNothing) {
 
 // Of what is bright or saturated no more than a twentieth clips.
 TEST(AutoExposure, KeepsHighlights) {
-  Image image = grey(10, 10, 0.01f);
-  for (size_t i = 0; i < 10; ++i) image.setRgb(i, Rgb(0.5f, 8, 0.5f));
-  EXPECT_EQ(autoExposure(image), -3);
+  Image image = grey(10, 10, 0.02f);
+  for (size_t i = 0; i < 10; ++i) image.setRgb(i, Rgb(0.1f, 0.2f, 0.1f));
+  const float stops = std::log2(1 / 0.2f);
+  EXPECT_NEAR(autoExposure(grey(10, 10, 0.02f)), std::log2(0.25f / 0.02f), 0.0501f);
+  EXPECT_NEAR(autoExposure(image), stops, 0.0501f);
+}
+
+// A patch of sun does not turn a room black, but a picture of much light is not burnt.
+TEST(AutoExposure, GivesUpALittleForHighlights) {
+  const auto withBright = [](size_t count) {
+    Image image = grey(10, 10, 0.01f);
+    for (size_t i = 0; i < count; ++i) image.setRgb(i, Rgb(8));
+    return image;
+  };
+  EXPECT_NEAR(autoExposure(withBright(10)),
+              std::log2(0.25f / 0.01f) - 0.1f * std::log2(800.0f) * 1.02f - 1.5f, 0.2f);
+  EXPECT_EQ(autoExposure(withBright(40)), -3);
 }
 
 TEST(AutoExposure, LooksAtSurfaces) {

@@ -123,6 +123,8 @@ namespace {
 constexpr double kMean = 0.25;
 constexpr double kOutliers = 0.02;  // at either end
 constexpr double kClipped = 0.05;
+constexpr double kDarker = 1.5;  // stops, at most, so that more does not clip
+constexpr double kMostClipped = 0.25;
 
 struct Levels {
   std::vector<float> luminances, largest;  // of the pixels, in ascending order
@@ -153,9 +155,12 @@ float autoExposure(const Image& radiance, const Image& coverage) {
   for (size_t i = outliers; i < count - outliers; ++i)
     sum += std::log2(double(levels.luminances[i]));
   const double toMean = std::log2(kMean) - sum / double(count - 2 * outliers);
-  const size_t bright = size_t(double(count - 1) * (1 - kClipped));
-  const double toWhite = -std::log2(double(levels.largest[bright]));
-  return float(std::round(10 * std::min(toMean, toWhite)) / 10) + 0.0f;  // never -0
+  const auto whereClips = [&](double fraction) {
+    return -std::log2(double(levels.largest[size_t(double(count - 1) * (1 - fraction))]));
+  };
+  const double dark = std::min(toMean - kDarker, whereClips(kMostClipped));
+  const double stops = std::min(toMean, std::max(whereClips(kClipped), dark));
+  return float(std::round(10 * stops) / 10) + 0.0f;  // never -0
 }
 
 }  // namespace chromeball
