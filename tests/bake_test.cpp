@@ -55,6 +55,40 @@ TEST(Bake, FurnaceOfAnOpenPlane) {
   for (const PointResult& point : radiance.result.points) EXPECT_NEAR(point.mean().z, 0.5f, 1e-6f);
 }
 
+// A patch in the middle of two nested balls of glass that hardly refract: all light comes 1 m
+// through the inner one and 1 m through the outer one.
+TEST(Bake, PointsInsideOfGlassReceiveWhatItLetsThrough) {
+  Scene scene;
+  addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-0.01f, 0, 0.01f}, {0.02f, 0, 0},
+          {0, 0, -0.02f});
+  Material glass;
+  glass.metallic = 0, glass.roughness = 0, glass.ior = 1.0001f;
+  glass.extended = ExtendedMaterial();
+  glass.extended->transmission = 1;
+  glass.extended->thinWalled = false;
+  for (const float radius : {1.0f, 2.0f}) {
+    glass.extended->attenuation = Rgb(0.3f / radius);
+    addSphere(scene, addMaterial(scene, glass), vec3(0), radius, 96);
+  }
+  const double passed = std::exp(-0.3 - 0.15);
+  const std::vector<PlacedMesh> patch = {placedMeshes(scene).front()};
+  const std::vector<Chart> charts = chartsOf(patch);
+  const Atlas atlas = fitAtlas(charts, 4, 1, "test");
+  for (const BakedLight what : {BakedLight::Irradiance, BakedLight::Radiance}) {
+    const World world(scene, {}, allTables());
+    const Probe probe(white());
+    const auto lighting = makeStrategy("bsdf", probe, Mis::Balance, "test");
+    const std::vector<BakePoint> points = texelPoints(patch, charts, atlas);
+    const BakeResult result = bake(world, *lighting, placedMeshes(scene), points,
+                                   {.what = what, .samples = 256, .maxDepth = 8}, [](double) {});
+    double sum = 0;
+    for (const PointResult& point : result.points) sum += double(point.mean().x);
+    const double mean = sum / double(result.points.size());
+    EXPECT_NEAR(mean, (what == BakedLight::Irradiance ? kPiD : 1) * passed, 0.02 * passed)
+        << int(what);
+  }
+}
+
 // Every heuristic weighs samples in its own way, for the same mean.
 TEST(Bake, HeedsTheHeuristic) {
   Scene scene;

@@ -234,6 +234,14 @@ TEST(SlowHostile, ExrHeadersAreChecked) {
                     "4294967296 x 1 texels");
   expectHeaderError(exr({channels, {"tiles", "tiledesc", words({60000, 60000}) + '\0'}}),
                     "60000 x 60000 texels");
+  // Another attribute of its type is no channel list, nor a compression.
+  std::string thousands;
+  for (int i = 1000; i < 9000; ++i)
+    thousands += "c" + std::to_string(i) + '\0' + words({1, 0, 1, 1});
+  expectHeaderError(exr({{"channels", "chlist", thousands + '\0'},
+                         {"dataWindow", "box2i", words({0, 0, 119999, 0})},
+                         {"other", "chlist", channel}}),
+                    "exceed the limit");
   // Read beyond its stated length, the channel list would hide the next attribute.
   const std::array<std::string, 3> endless = {"channels", "chlist", channel.substr(0, 18)};
   expectHeaderError(exr({endless, {"owner", "string", "I"}}), "a list of 18 bytes");

@@ -184,6 +184,25 @@ TEST(SlowLayeredBsdf, whiteFurnaceLosesNothing) {
     }
 }
 
+// A smooth sheet transmits what the opaque surface scatters, with one normal for transmission and
+// reflection, also where the shading normal is turned away from the viewer.
+TEST(LayeredBsdf, sheetsWithTiltedNormalsLoseNothing) {
+  for (const float tilt : {0.0f, 40.0f, 60.0f, 80.0f, 95.0f, 117.0f}) {
+    Surface surface = flatSurface();
+    surface.normal = directionAt(-std::min(tilt, 89.0f));
+    const auto albedoOf = [&](float fraction) {
+      const vec3 wo = directionAt(0.5f * tilt);  // at up to 1.5 tilt from the normal
+      return albedo(Layered(dielectric(0), transmissive(fraction, true), {Rgb(1.5f), 1.5f}, surface,
+                            wo, allTables()),
+                    1 << 12)
+          .x;
+    };
+    const float opaque = albedoOf(0);
+    EXPECT_NEAR(albedoOf(0.5f), (opaque + 1) / 2, 0.01f) << tilt;
+    EXPECT_NEAR(albedoOf(1), 1, 0.01f) << tilt;
+  }
+}
+
 // KHR_materials_specular scales the reflection of glass and so its energy compensation; light that
 // is not reflected is transmitted. Also at a boundary with another body, with a relative index.
 TEST(SlowLayeredBsdf, glassOfAnySpecularStrengthLosesNothing) {

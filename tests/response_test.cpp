@@ -141,6 +141,8 @@ TEST(ResponseCurve, FilesRoundTrip) {
   std::ofstream(path) << "# camera\r\nlevel,red,green,blue\r\n" << rows(doubled);
   EXPECT_EQ(ResponseCurve::read(path).logExposure(0, 0), -INFINITY);
   EXPECT_NEAR(ResponseCurve::read(path).logExposure(2, 100 / 255.), std::log(100), 1e-9);
+  std::ofstream(path) << "\xef\xbb\xbflevel,red,green,blue\n" << rows(doubled);
+  EXPECT_NEAR(ResponseCurve::read(path).logExposure(2, 100 / 255.), std::log(100), 1e-9);
   // Levels of 16 bits between black and the next one have an exposure.
   for (const double level : {1 / 65535., 0.3 / 255, 0.9 / 255})
     EXPECT_NEAR(ResponseCurve::read(path).logExposure(1, level), std::log(255 * level), 1e-9);

@@ -255,6 +255,29 @@ TEST(SceneBuilder, NamesTheNumberOfAMaterialThatIsWrong) {
             "material \"red\": there is no texture 0 among 0");
 }
 
+// As factors: a surface must not reflect more than it receives. Emission may be any light.
+TEST(SceneBuilder, RefusesTexelsAboveOneButOfEmission) {
+  const auto withTexture = [](TextureSlot Material::*slot) -> std::string {
+    Scene scene;
+    SceneBuilder builder(scene);
+    Material material = lambert(Rgb(0.5f));
+    material.name = "m";
+    const int image = builder.addImage({2, 1, {}, {vec4(1), vec4(0.5f, 255, 0, 1)}});
+    material.*slot = builder.addTexture(image, false);
+    try {
+      builder.addMaterial(material);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  for (const auto slot : {&Material::baseColorTexture, &Material::metallicRoughnessTexture})
+    EXPECT_EQ(withTexture(slot),
+              "material \"m\": texel 1, 0 of a texture exceeds 1, as only emission and the "
+              "specular colour may");
+  EXPECT_EQ(withTexture(&Material::emissiveTexture), "");
+}
+
 TEST(SceneBuilder, RefusesImagesCamerasAndLightsThatAreWrong) {
   EXPECT_EQ(errorOf([](SceneBuilder& b) {
               b.addImage({0, 4, {}, {}});

@@ -343,6 +343,17 @@ TEST_F(SceneFileTest, MissingFilesAreNamedWithTheirLine) {
   EXPECT_THROW(read("model = 'ball.glb'\n"), InputError);  // not relative to the working directory
 }
 
+// ".." leaves the folder that a link leads to, as for the system.
+TEST_F(SceneFileTest, PathsLeaveLinkedFoldersAsTheSystemDoes) {
+  fs::create_directories(root_ / "real/deep/scenes");
+  fs::create_directory_symlink("real/deep/scenes", root_ / "link");
+  std::ofstream(root_ / "real/deep/ball.glb") << "x";
+  std::ofstream(root_ / "link/s.toml") << "model = '../ball.glb'\n";
+  const SceneFile linked = readSceneFile((root_ / "link/s.toml").string());
+  EXPECT_TRUE(fs::equivalent(linked.models[0].file, root_ / "real/deep/ball.glb"));
+  EXPECT_FALSE(fs::equivalent(linked.models[0].file, root_ / "ball.glb"));
+}
+
 TEST_F(SceneFileTest, BrokenTomlNamesItsLine) {
   expectError("[render]\nsamples = \n", 3, {"TOML"});
   expectError("[render]\nsamples = 1\nsamples = 2\n", 4, {"TOML"});

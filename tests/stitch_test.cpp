@@ -214,6 +214,13 @@ TEST_F(CommandStitch, ReadsAListAndWritesRefinedPoses) {
   const CommandResult again = runCommand({"probe", "stitch", path("poses.toml"), "-o",
                                           path("again.exr"), "--size", "64x32", "--same-exposure"});
   EXPECT_EQ(again.status, 0) << again.error;
+  // The list names its tiles from its own folder.
+  std::filesystem::create_directory(path("lists"));
+  const CommandResult elsewhere =
+      runCommand({"probe", "stitch", path("tiles.toml"), "-o", path("out2.exr"), "--size", "64x32",
+                  "--refine", "--poses", path("lists/../lists/poses.toml"), "--same-exposure"});
+  EXPECT_EQ(elsewhere.status, 0) << elsewhere.error;
+  EXPECT_NE(fileContents(path("lists/poses.toml")).find("'../t0.exr'"), std::string::npos);
   const Image a = readImage(path("out.exr")), b = readImage(path("again.exr"));
   for (size_t i = 0; i < a.texels.size(); ++i) ASSERT_NEAR(a.texels[i], b.texels[i], 1e-4f);
 }

@@ -82,7 +82,7 @@ def colors(name: str, value: Any) -> NDArray[Any]:
     found = as_array(name, value)
     if found.ndim != 2 or found.shape[1] not in (3, 4):
         raise InputError(f"{name}: has the shape {list(found.shape)}; it should be [V,3] or [V,4]")
-    most = np.iinfo(found.dtype).max if found.dtype in (np.uint8, np.uint16) else 1
+    most = np.iinfo(found.dtype).max if found.dtype.kind == "u" and found.dtype.itemsize <= 2 else 1
     channels = array(name, found, ("V", found.shape[1]), "float64") / most
     wrong = np.flatnonzero(~((channels >= 0) & (channels <= 1)).all(1))
     if wrong.size:

@@ -88,7 +88,8 @@ class Scene:
 
     def __init__(self, **keys: Any) -> None:
         check_scene(keys, "Scene()")
-        self._keys: dict[str, Any] = {"model": [], "light": [], **keys}
+        lists = {name: _listed(keys.get(name)) for name in ("model", "light")}
+        self._keys: dict[str, Any] = {**keys, **lists}
         self._geometry = Geometry()
         self._materials: dict[int, tuple[Material, int]] = {}  # by id(), with what keeps that its own
         self._meshes: list[int] = []  # the material of each
@@ -167,6 +168,13 @@ class Scene:
     def _add(self, section: str, entry: dict[str, Any], caller: str) -> None:
         check_scene({section: [entry]}, caller)
         self._keys[section] = [*self._keys[section], entry]
+
+
+def _listed(value: Any) -> list[Any]:
+    """One model or light is a list of one."""
+    if value is None:
+        return []
+    return [value] if isinstance(value, str | os.PathLike | dict) else list(value)
 
 
 def load(path: str | os.PathLike[str], **keys: Any) -> Scene:

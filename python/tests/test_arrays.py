@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What add_mesh() and Probe() accept and refuse."""
 
+import os
+import pathlib
+
 import numpy as np
 import pytest
 from conftest import SQUARE, TWO, sky, square_scene
@@ -122,6 +125,21 @@ def test_a_texture_colours_the_mesh(camera, small):
     assert middle[0] > 0 and middle[1] == 0 and middle[2] == 0
 
 
+def test_float_textures_above_one_are_refused_but_of_emission():
+    with pytest.raises(cb.InputError, match="texel 0, 0 of a texture exceeds 1"):
+        cb.Material(base_color_texture=np.full((2, 2, 3), 255.0))
+    cb.Material(emission=1, emission_texture=np.full((2, 2, 3), 255.0))
+
+
+def test_one_model_or_light_is_a_list_of_one():
+    model = os.fspath(pathlib.Path(__file__).parents[2] / "scenes" / "models" / "pillars.gltf")
+    scene = cb.Scene(model=model, light={"type": "sun", "direction": (0, -1, 0), "irradiance": 1})
+    scene.add_model(model)
+    scene.add_light("sun", direction=(0, -1, 0), irradiance=1)
+    assert [m if isinstance(m, str) else m["file"] for m in scene._keys["model"]] == [model, model]
+    assert len(scene._keys["light"]) == 2
+
+
 def test_colours_of_vertices(camera, small):
     """Bytes and uint16 are fractions; floats and whole numbers of 0 and 1 are themselves."""
     grey = rendered(lambda s: s.add_mesh(SQUARE, TWO, material=cb.Material(base_color=0.2)), camera, small)
@@ -130,7 +148,7 @@ def test_colours_of_vertices(camera, small):
         return rendered(lambda s: s.add_mesh(SQUARE, TWO, colors=colors, material=cb.Material(base_color=1)), camera, small)
 
     for colors in (np.full((4, 3), 0.2), np.full((4, 3), 51, np.uint8), np.full((4, 4), (51, 51, 51, 255), np.uint8),
-                   np.full((4, 3), 13107, np.uint16)):
+                   np.full((4, 3), 13107, np.uint16), np.full((4, 3), 13107, ">u2")):
         np.testing.assert_allclose(shown(colors), grey, rtol=1e-5)
     np.testing.assert_array_equal(shown([(1, 0, 0)] * 4), shown(np.array([[1.0, 0, 0]] * 4)))
 

@@ -20,10 +20,23 @@ bool hidesItsInside(const Material& material) {
   return material.alphaMode == AlphaMode::Opaque && !material.transmits();
 }
 
-// A ray that ends at the surface, as if a camera above it looked down along the normal.
-Ray rayTo(const Surface& surface) { return {surface.position + surface.normal, -surface.normal}; }
+// Nothing is absorbed on the way to the surface.
+float distanceOf(const PathState& path) { return path.media.inside() ? 0.0f : 1.0f; }
 
 }  // namespace
+
+PathState pathTo(const Surface& surface, const vec3& view, const PathTracer& tracer,
+                 const PathContext& context) {
+  PathState path;
+  path.media = Media::around(tracer.world(), rayFrom(surface, surface.geometricNormal),
+                             context.sampler.sampleKey(), tracer.settings().visible);
+  path.ray = {surface.position + distanceOf(path) * view, -view};
+  return path;
+}
+
+Hit hitOf(const PathState& path, const BakePoint& point) {
+  return {uint32_t(point.instance), point.triangle, point.barycentric, distanceOf(path)};
+}
 
 Surface PointLight::surfaceAt(const BakePoint& point) const {
   const Instance& instance = scene().instances[size_t(point.instance)];
@@ -40,8 +53,7 @@ Surface PointLight::surfaceAt(const BakePoint& point) const {
 }
 
 Rgb PointLight::irradiance(const Surface& surface, PathContext& context) const {
-  PathState state;
-  state.ray = rayTo(surface);
+  const PathState state = pathTo(surface, surface.normal, tracer_, context);
   const MaterialPoint white{Rgb(1), 0, 1, Rgb(0), 0};
   const Bsdf bsdf(white, surface, surface.normal, tracer_.world().bsdfTables);
   return kPi * tracer_.reflected(state, surface, bsdf, context);
@@ -60,10 +72,8 @@ Rgb PointLight::sample(const BakePoint& point, const Surface& surface, PathConte
     case BakedLight::Radiance:
       break;
   }
-  PathState state;
-  state.ray = rayTo(surface);
-  const Hit hit{uint32_t(point.instance), point.triangle, point.barycentric, 1};
-  return tracer_.follow(state, hit, context);
+  const PathState state = pathTo(surface, surface.normal, tracer_, context);
+  return tracer_.follow(state, hitOf(state, point), context);
 }
 
 bool PointLight::isBuried(const BakePoint& point, const Surface& surface,

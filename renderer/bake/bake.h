@@ -20,6 +20,12 @@ enum class BakedLight {
 };
 inline constexpr const char* kBakedLightNames[] = {"irradiance", "ambient-occlusion", "radiance"};
 
+// A path that ends on the front of a surface, seen from `view`, unit, in the bodies around it.
+PathState pathTo(const Surface& surface, const vec3& view, const PathTracer& tracer,
+                 const PathContext& context);
+// The hit at its end.
+Hit hitOf(const PathState& path, const BakePoint& point);
+
 class PointLight {
  public:
   // The tracer must outlive this. `distance`: surfaces farther away do not occlude, metres.

@@ -221,7 +221,8 @@ std::vector<Setting> lightingRows() {
        .fallback = "all",
        .choices = {"all", "suns", "rest"},
        .help = "What lights the scene: all, only the suns of the probe and of [[light]], or all "
-               "but these. The two parts add up to the whole."},
+               "but these. The two parts add up to the whole, unless a [[source]] holds such a sun "
+               "of the probe: its light is then no sun's."},
       {.key = "show_lights",
        .type = Flag,
        .help = "The camera and mirrors see, instead of the probe, the lights by which the strategy "

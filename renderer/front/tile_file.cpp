@@ -61,10 +61,10 @@ std::vector<TileEntry> readTiles(const std::string& path) {
 }
 
 void writeTiles(const std::string& path, const std::vector<TileEntry>& tiles) {
-  const fs::path folder = fs::absolute(path).parent_path();
+  const fs::path file = path, folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   std::string text;
   for (const TileEntry& tile : tiles) {
-    toml::table table{{"file", fs::absolute(tile.file).lexically_proximate(folder).string()},
+    toml::table table{{"file", fs::proximate(tile.file, folder).string()},
                       {"yaw", tile.pose.yaw},
                       {"pitch", tile.pose.pitch},
                       {"roll", tile.pose.roll},

@@ -212,9 +212,17 @@ void Section::read(Settings& settings) const {
         settings.set(setting.name(), entry.value(), entry.location());
 }
 
+// Without "x/.." where that leads to the same folder: behind a link it leads elsewhere.
 std::string resolvedPath(const Entry& entry) {
-  const auto folder = std::filesystem::path(entry.file).parent_path();
-  return (folder / entry.text()).lexically_normal().string();
+  namespace fs = std::filesystem;
+  const fs::path whole = fs::path(entry.file).parent_path() / entry.text();
+  const fs::path normal = whole.lexically_normal();
+  const auto folderOf = [](const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+  };
+  std::error_code none;
+  const bool isSame = fs::equivalent(folderOf(whole), folderOf(normal), none);
+  return (isSame || !fs::exists(folderOf(whole), none) ? normal : whole).string();
 }
 
 std::string existingFile(const Entry& entry, std::string_view relativeTo) {

@@ -99,7 +99,7 @@ void passShadowsStraight(std::span<Material> materials) {
 }
 
 Rgb sheetTransmittance(const MaterialPoint& m, float transmission, float cosine) {
-  const float c = 1 - std::min(cosine, 1.0f), c2 = c * c;
+  const float c = 1 - std::clamp(cosine, 0.0f, 1.0f), c2 = c * c;
   const float f0 = maxComponent(m.dielectricF0);
   const float reflected = f0 + (m.dielectricF90 - f0) * (c2 * c2 * c);
   return m.baseColor * (transmission * (1 - m.metallic) * (1 - reflected));
@@ -111,8 +111,11 @@ Rgb straightTransmittance(const Scene& scene, const Instance& instance, const Su
   if (!passesShadows(material)) return Rgb(0);
   const MaterialPoint point = materialAt(scene, surface);
   if (!material.isSmooth() && point.roughness * point.roughness >= kSmoothAlpha) return Rgb(0);
+  // The same normal as that of the lobe that reflects the rest.
+  const vec3 wo = glm::dot(surface.geometricNormal, direction) < 0 ? -direction : direction;
+  const vec3 normal = normalThatReflects(surface.normal, surface.geometricNormal, wo);
   return sheetTransmittance(point, extendedMaterialAt(scene, instance, surface).transmission,
-                            std::fabs(glm::dot(surface.normal, direction)));
+                            glm::dot(normal, wo));
 }
 
 }  // namespace chromeball

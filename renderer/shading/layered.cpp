@@ -80,9 +80,8 @@ void Layered::addBase(const Point& p, const MaterialPoint& m, const Rgb& metalF0
         addOpaque(p, m, m.baseColor * (1 - m.metallic - transmission), metalF0, weight);
     if (transmission == 0) return;
     const bool smooth = m.roughness * m.roughness < kSmoothAlpha && e.iridescence == 0;
-    const Rgb fraction =
-        smooth ? sheetTransmittance(m, e.transmission, glm::dot(p.surface.normal, p.wo))
-               : m.baseColor * transmission * (1.0f - reflected);
+    const Rgb fraction = smooth ? sheetTransmittance(m, e.transmission, glm::dot(normal_, p.wo))
+                                : m.baseColor * transmission * (1.0f - reflected);
     add(sheet_, Sheet(fraction, m.roughness, p.surface, p.wo, p.tables, p.mirrorAlpha), weight);
     return;
   }

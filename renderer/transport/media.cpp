@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "transport/media.h"
 
+#include <algorithm>
+
+#include "trace/accel.h"
+#include "transport/world.h"
+
 namespace chromeball {
 namespace {
 
@@ -26,6 +31,24 @@ Rgb relativeIndex(const Material* from, const Material* to, const Rgb& throughpu
 }
 
 }  // namespace
+
+Media Media::around(const World& world, Ray ray, uint32_t key, RayMask mask) {
+  constexpr uint32_t kMostSurfaces = 256;
+  Media around, entered;
+  Hit hit;
+  for (uint32_t i = 0; world.hasBodies && i < kMostSurfaces; ++i) {
+    if (!world.accel.intersect(ray, key + i, hit, mask)) break;
+    const Surface surface = surfaceAt(world.scene, world.scene.instances[hit.instance],
+                                      hit.triangle, hit.barycentric, -ray.direction, 0, ray.time);
+    if (surface.frontFace || entered.find(surface.material) >= 0)
+      entered.follow(surface, ray.direction);
+    else if (surface.material->isBody() && around.count_ < int(around.bodies_.size()))
+      around.bodies_[size_t(around.count_++)] = surface.material;
+    ray = rayFrom(surface, ray.direction);
+  }
+  std::reverse(around.bodies_.begin(), around.bodies_.begin() + around.count_);
+  return around;
+}
 
 int Media::find(const Material* body) const {
   int i = count_ - 1;

@@ -7,13 +7,20 @@
 
 #include "scene/surface.h"
 #include "shading/glass.h"
+#include "trace/ray.h"
 
 namespace chromeball {
+
+struct World;
 
 // Bodies may be nested. Where they overlap, the one entered last determines the medium. The camera
 // is in air, outside all bodies. At most four bodies are tracked; any further one is ignored.
 class Media {
  public:
+  // Those around the start of a path that does not come from the camera: `ray`, from there, leaves
+  // them without having entered them. `key`, `mask`: as for Accel::intersect().
+  static Media around(const World& world, Ray ray, uint32_t key, RayMask mask);
+
   bool inside() const { return count_ > 0; }
   std::span<const Material* const> bodies() const {
     return std::span(bodies_).first(size_t(count_));

@@ -2,6 +2,7 @@
 // A scene with its acceleration structure and light tables.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -29,13 +30,15 @@ struct World {
         accel(described, masks, std::move(earlier)),
         sources(described),
         sharedPlaces(accel),
-        bsdfTables(tables) {}
+        bsdfTables(tables),
+        hasBodies(std::ranges::any_of(described.materials, &Material::isBody)) {}
 
   const Scene& scene;
   const Accel accel;
   const SceneSources sources;
   const SharedPlaces sharedPlaces;
   const BsdfTables bsdfTables;  // the tables that its materials need
+  const bool hasBodies;         // of glass
 };
 
 }  // namespace chromeball

@@ -15,7 +15,7 @@
 # Prints the ids of the jobs. $CHROMEBALL names the program (default: this build's).
 set -euo pipefail
 
-usage() { sed -n '7,17s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+usage() { sed -n '6,16s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 fail() { echo "farm_slurm.sh: $*" >&2; exit 2; }
 
 chromeball=${CHROMEBALL:-$(cd "$(dirname "$0")/../.." && pwd)/build/chromeball}

@@ -8,7 +8,7 @@
 # OUT/index.html also lists warnings, and models that were refused. Without --probe among the options
 # a synthetic studio lights the models.
 set -euo pipefail
-(($# >= 2)) || { sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 2; }
+(($# >= 2)) || { sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 2; }
 folder=$(realpath "$1") out=$2
 shift 2
 chromeball=$(realpath "$(dirname "$0")/../../build/chromeball")

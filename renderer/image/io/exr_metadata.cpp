@@ -125,15 +125,16 @@ class ExrHeaders {
         std::memcpy(box, content.data(), sizeof(box));
         width = int64_t(box[2]) - box[0] + 1;
         height = int64_t(box[3]) - box[1] + 1;
-      } else if (type == "tiledesc") {
+      } else if (type == "tiledesc" && name == "tiles") {
         uint32_t tile[2];
         std::memcpy(tile, content.data(), sizeof(tile));
         checkSide(tile[0]);
         checkSide(tile[1]);
         checkImageSize(path_, tile[0], tile[1], channels);
-      } else if (type == "chlist") {
+      } else if (type == "chlist" && name == "channels") {
         channels = channelsIn(content);
-      } else if (type == "compression" && size_t(content[0]) < kRowsOfBlock.size()) {
+      } else if (type == "compression" && name == "compression" &&
+                 size_t(content[0]) < kRowsOfBlock.size()) {
         rowsOfBlock = kRowsOfBlock[size_t(content[0])];
       }
     }

@@ -59,7 +59,9 @@ ResponseCurve ResponseCurve::read(const std::filesystem::path& path) {
   const std::vector<uint8_t> bytes = readFile(path);
   std::istringstream text(std::string(bytes.begin(), bytes.end()));
   std::string line;
-  if (!nextLine(text, line) || line != kHeader)
+  const bool hasLine = nextLine(text, line);
+  if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // byte order mark of UTF-8
+  if (!hasLine || line != kHeader)
     throwInput("{}: is no response curve; its first line should be `{}`", path.string(), kHeader);
   std::vector<dvec3> logs(kLevels);
   for (int level = 0; level < kLevels; ++level) {

@@ -13,10 +13,9 @@ namespace {
 // A path from `view`, unit, away from the surface of a point.
 EscapingPath pathFrom(const vec3& view, const PathTracer& tracer, const BakePoint& point,
                       const Surface& surface, PathContext& context) {
-  PathState state;
-  state.ray = {surface.position + view, -view};
-  const Hit hit{uint32_t(point.instance), point.triangle, point.barycentric, 1};
-  if (!tracer.vertex(state, hit, context)) return {false, Rgb(0), vec3(0), state.radiance};
+  PathState state = pathTo(surface, view, tracer, context);
+  if (!tracer.vertex(state, hitOf(state, point), context))
+    return {false, Rgb(0), vec3(0), state.radiance};
   return follow(tracer, state, context);
 }
 

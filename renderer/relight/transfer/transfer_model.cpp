@@ -31,8 +31,7 @@ DirectionBasis directionsOf(const std::string& name, const std::string& location
 
 // A path from the front of a white Lambertian surface.
 EscapingPath pathFromWhite(const PathTracer& tracer, const Surface& surface, PathContext& context) {
-  PathState state;
-  state.ray = {surface.position + surface.normal, -surface.normal};
+  PathState state = pathTo(surface, surface.normal, tracer, context);
   const MaterialPoint white{Rgb(1), 0, 1, Rgb(0), 0};
   const Bsdf bsdf(white, surface, surface.normal, tracer.world().bsdfTables);
   if (!tracer.scatter(state, surface, bsdf, context))

@@ -123,6 +123,21 @@ void checkMaterial(const Material& m, size_t textures) {
   checkSlots(m, textures);
 }
 
+// Floats may exceed 1 where they are light, or a colour that has no upper limit itself.
+void checkTexelsOf(const Material& material, const std::vector<Texture>& textures) {
+  Material copy = material;
+  for (const TextureSlot* slot : textureSlots(copy)) {
+    if (!*slot || slot == &copy.emissiveTexture || slot == &copy.specularColorTexture) continue;
+    const TexelGrid& grid = *textures[size_t(slot->texture)].grid;
+    for (size_t i = 0; i < grid.texelsFloat.size(); ++i)
+      if (glm::any(glm::greaterThan(grid.texelsFloat[i], vec4(1))))
+        throwInput(
+            "material \"{}\": texel {}, {} of a texture exceeds 1, as only emission and the "
+            "specular colour may",
+            material.name, i % size_t(grid.width), i / size_t(grid.width));
+  }
+}
+
 }  // namespace
 
 int SceneBuilder::addNode(std::string name, int parent) {
@@ -167,6 +182,7 @@ TextureSlot SceneBuilder::addTexture(int image, bool srgb, const TextureSampler&
 
 int SceneBuilder::addMaterial(Material material) {
   checkMaterial(material, scene_.textures.size());
+  checkTexelsOf(material, scene_.textures);
   TextureSlot& color = material.baseColorTexture;
   if (color && material.alphaMode != AlphaMode::Opaque &&
       !scene_.textures[size_t(color.texture)].weightedByAlpha) {
