@@ -2,7 +2,6 @@
 #include "scene/gltf/gltf_file.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 
 #include "base/json.h"
@@ -17,11 +16,6 @@ namespace {
 using nlohmann::json;
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-// Without "x/..", since a URI never enters x (RFC 3986, section 5.2.4).
-std::string pathOf(const std::string& uri) {
-  return std::filesystem::path(decodePercent(uri)).lexically_normal().string();
-}
 
 }  // namespace
 
@@ -142,7 +136,7 @@ std::string GltfFile::describeImage(int index) const {
 
 void GltfFile::addToFiles(const std::string& uri) {
   if (uri.empty() || isDataUri(uri)) return;
-  files_.push_back((std::filesystem::path(path_).parent_path() / pathOf(uri)).string());
+  files_.push_back((std::filesystem::path(path_).parent_path() / decodePercent(uri)).string());
 }
 
 Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const {
@@ -151,7 +145,7 @@ Bytes GltfFile::readUri(const std::string& uri, const std::string& where) const 
     if (!decodeDataUri(uri, bytes)) fail("{}: invalid data URI", where);
     return bytes;
   }
-  const std::string name = pathOf(uri);
+  const std::string name = decodePercent(uri);
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   try {
     checkNoScheme(uri);
