@@ -17,13 +17,14 @@ rm -rf "$made" "$tools" "$folder/import"
 PATH=$PWD/$tools/bin:$PATH auditwheel repair --strip --wheel-dir "$made/whole" "$made"/chromeball-*.whl \
   >"$made/repair.log" 2>&1 || { cat "$made/repair.log" >&2; exit 1; }
 
-# The licences of the libraries, from Debian's packages.
 "$tools/bin/wheel" unpack --dest "$made" "$made"/whole/*.whl >/dev/null
 root=$(echo "$made"/chromeball-*/)
 if [[ $(echo "$made"/whole/*.whl) == *abi3* && ! -e ${root}chromeball/_core.abi3.so ]]; then
   echo "The wheel is named abi3, but its module is of one version of Python" >&2
   exit 1
 fi
+
+# The licences of the libraries, from Debian's packages.
 mkdir "$root/chromeball.libs/licences"
 for library in "$root"chromeball.libs/*.so*; do
   name=$(basename "$library" | sed -E 's/-[0-9a-f]{8}(\.|-)/\1/; s/\.so.*//')
