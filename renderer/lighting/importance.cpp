@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "math/lanes.h"
+#include "lighting/light_arrays.h"
 
 namespace chromeball {
 namespace {
@@ -38,26 +38,22 @@ void forLanes(size_t size, const Visit& visit) {
     visit(first, int(std::min<size_t>(kWidth, size - first)));
 }
 
-// Directions and their positions on the probe, in lanes.
-struct Located {
-  std::array<Lanes3<Float8>, LightSource::kMaxMany / kWidth> directions;
-  std::array<Probe::PositionOf<Float8>, LightSource::kMaxMany / kWidth> positions;
+// Positions on the probe, in lanes, and their directions.
+using Positions = std::array<Probe::PositionOf<Float8>, kMostInArrays / kWidth>;
+Positions located(const Probe& probe, const LaneArrays3& directions, size_t count) {
+  assert(count <= kMostInArrays);
+  Positions positions;
+  forLanes(count, [&](size_t first, int some) {
+    const auto& p = positions[first / kWidth] = probe.locate(directions.load(first));
+    for (int k = 0; k < some; ++k) probe.prefetch(p.column[k], p.row[k]);
+  });
+  return positions;
+}
 
-  template <class Ray>
-  Located(const Probe& probe, std::span<const Ray> rays) {
-    assert(rays.size() <= LightSource::kMaxMany);
-    forLanes(rays.size(), [&](size_t first, int count) {
-      Lanes3<Float8>& d = directions[first / kWidth];
-      d = Lanes3<Float8>{};
-      for (int k = 0; k < count; ++k) {
-        const vec3& wi = rays[first + size_t(k)].wi;
-        d.x[k] = wi.x, d.y[k] = wi.y, d.z[k] = wi.z;
-      }
-      const auto& p = positions[first / kWidth] = probe.locate(d);
-      for (int k = 0; k < count; ++k) probe.prefetch(p.column[k], p.row[k]);
-    });
-  }
-};
+template <class Ray>
+void copyDirections(std::span<const Ray> rays, LaneArrays3& directions) {
+  for (size_t i = 0; i < rays.size(); ++i) directions.set(i, rays[i].wi);
+}
 
 }  // namespace
 
@@ -112,60 +108,78 @@ LightSource::Escaped Importance::escaped(const LightPoint&, const vec3& wi) cons
   return {seen.radiance, seen.weight * scale_};
 }
 
-// Each loop prefetches what the next one reads.
 bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
                             std::span<DirectionSample> out) const {
-  assert(numbers.size() <= kMaxMany);
-  if (!(total_ > 0)) {
-    for (DirectionSample& sample : out) sample.pdf = 0;
-    return true;
-  }
-  std::array<double, kMaxMany> us, vs;
-  std::array<int, kMaxMany> columns, rows;
-  for (size_t i = 0; i < numbers.size(); ++i) {
-    us[i] = numbers[i].x * 0x1p-32, vs[i] = numbers[i].y * 0x1p-32;
-    rows[i] = rows_.sample(0, vs[i]);
-    columns_.prefetchGuide(rows[i], us[i]);
-  }
-  for (size_t i = 0; i < numbers.size(); ++i) columns_.prefetchCdf(rows[i], us[i]);
-  for (size_t i = 0; i < numbers.size(); ++i) {
-    columns[i] = columns_.sample(rows[i], us[i]);
-    probe_.prefetch(columns[i], rows[i]);
-  }
-  forLanes(numbers.size(), [&](size_t first, int count) {
-    Int8 column{}, row{};
-    Float8 u{}, v{};
-    for (int k = 0; k < count; ++k) {
-      const size_t i = first + size_t(k);
-      column[k] = columns[i], row[k] = rows[i];
-      u[k] = float(us[i]), v[k] = float(vs[i]);
-    }
-    const auto point = field_.sample<Float8>(column, row, u, v);
-    const Float8 pdf = point.weight * scale_;
-    const Float8 x = point.radiance.x / pdf, y = point.radiance.y / pdf, z = point.radiance.z / pdf;
-    for (int k = 0; k < count; ++k) {
-      const Lanes3<Float8>& d = point.direction;
-      out[first + size_t(k)] = {{d.x[k], d.y[k], d.z[k]}, {x[k], y[k], z[k]}, pdf[k]};
-    }
-  });
+  std::array<uint32_t, kMaxMany> u, v;
+  for (size_t i = 0; i < numbers.size(); ++i) u[i] = numbers[i].x, v[i] = numbers[i].y;
+  LightArrays found;
+  sampleArrays(std::span(u).first(numbers.size()), v.data(), found);
+  for (size_t i = 0; i < numbers.size(); ++i)
+    out[i] = {found.direction.at(i), found.light.at(i), found.pdf[i]};
   return true;
 }
 
+// Each loop prefetches what the next one reads.
+void Importance::sampleArrays(std::span<const uint32_t> u32, const uint32_t* v32,
+                              LightArrays& out) const {
+  const size_t count = u32.size();
+  assert(count <= kMostInArrays);
+  if (!(total_ > 0)) return out.pdf.fill(0);
+  alignas(64) LaneArray<double> us, vs;
+  alignas(64) LaneArray<int32_t> columns, rows;
+  for (size_t i = 0; i < count; ++i) {
+    us[i] = u32[i] * 0x1p-32, vs[i] = v32[i] * 0x1p-32;
+    rows[i] = rows_.sample(0, vs[i]);
+    columns_.prefetchGuide(rows[i], us[i]);
+  }
+  for (size_t i = 0; i < count; ++i) columns_.prefetchCdf(rows[i], us[i]);
+  alignas(64) LaneArray<float> u, v;
+  for (size_t i = 0; i < count; ++i) {
+    columns[i] = columns_.sample(rows[i], us[i]);
+    u[i] = float(us[i]), v[i] = float(vs[i]);
+    probe_.prefetch(columns[i], rows[i]);
+  }
+  for (size_t i = count; i % kWidth != 0; ++i) columns[i] = rows[i] = 0, u[i] = v[i] = 0;
+  forLanes(count, [&](size_t first, int) {
+    const auto point = field_.sample<Float8>(loadLanes(&columns[first]), loadLanes(&rows[first]),
+                                             loadLanes(&u[first]), loadLanes(&v[first]));
+    const Float8 pdf = point.weight * scale_;
+    out.direction.store(first, point.direction);
+    out.light.store(first,
+                    {point.radiance.x / pdf, point.radiance.y / pdf, point.radiance.z / pdf});
+    storeLanes(&out.pdf[first], pdf);
+  });
+}
+
 void Importance::escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const {
-  const Located at(probe_, rays);
-  forLanes(rays.size(), [&](size_t first, int count) {
-    const auto seen = field_.at(at.directions[first / kWidth], at.positions[first / kWidth]);
-    const Float8 pdf = seen.weight * scale_;
-    const Lanes3<Float8>& c = seen.radiance;
-    for (int k = 0; k < count; ++k) out[first + size_t(k)] = {{c.x[k], c.y[k], c.z[k]}, pdf[k]};
+  RayArrays arrays;
+  copyDirections(rays, arrays.direction);
+  LightArrays found;
+  escapedArrays(arrays, rays.size(), found);
+  for (size_t i = 0; i < rays.size(); ++i) out[i] = {found.light.at(i), found.pdf[i]};
+}
+
+void Importance::escapedArrays(const RayArrays& rays, size_t count, LightArrays& out) const {
+  const Positions positions = located(probe_, rays.direction, count);
+  forLanes(count, [&](size_t first, int) {
+    const auto seen = field_.at(rays.direction.load(first), positions[first / kWidth]);
+    out.light.store(first, seen.radiance);
+    storeLanes(&out.pdf[first], seen.weight * scale_);
   });
 }
 
 void Importance::backgroundMany(std::span<const Sight> rays, std::span<Rgb> out) const {
-  const Located at(probe_, rays);
-  forLanes(rays.size(), [&](size_t first, int count) {
-    const Lanes3<Float8> c = probe_.radiance(at.positions[first / kWidth]);
-    for (int k = 0; k < count; ++k) out[first + size_t(k)] = {c.x[k], c.y[k], c.z[k]};
+  RayArrays arrays;
+  copyDirections(rays, arrays.direction);
+  LightArrays found;
+  backgroundArrays(arrays, rays.size(), found);
+  for (size_t i = 0; i < rays.size(); ++i) out[i] = found.light.at(i);
+}
+
+void Importance::backgroundArrays(const RayArrays& rays, size_t count, LightArrays& out) const {
+  const Positions positions = located(probe_, rays.direction, count);
+  forLanes(count, [&](size_t first, int) {
+    out.light.store(first, probe_.radiance(positions[first / kWidth]));
   });
 }
 

@@ -29,6 +29,10 @@ class Importance : public ProbeLight {
                   std::span<DirectionSample> out) const override;
   void escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const override;
   void backgroundMany(std::span<const Sight> rays, std::span<Rgb> out) const override;
+  void sampleArrays(std::span<const uint32_t> u, const uint32_t* v,
+                    LightArrays& out) const override;
+  void escapedArrays(const RayArrays& rays, size_t count, LightArrays& out) const override;
+  void backgroundArrays(const RayArrays& rays, size_t count, LightArrays& out) const override;
 
   // The sample from two numbers in [0, 1), and its pdf over solid angle; 0 for a black probe.
   DirectionSample sampleDirection(double u, double v) const;

@@ -15,6 +15,8 @@ namespace chromeball {
 
 class Bsdf;
 struct Instance;
+struct LightArrays;
+struct RayArrays;
 struct Surface;
 
 // A point that receives light.
@@ -127,6 +129,13 @@ class LightSource {
   virtual void backgroundMany(std::span<const Sight> rays, std::span<Rgb> out) const {
     for (size_t i = 0; i < rays.size(); ++i) out[i] = background(rays[i].origin, rays[i].wi);
   }
+
+  // sampleMany(), escapedMany() and backgroundMany() from and to arrays (lighting/light_arrays.h),
+  // for sources for which sampleMany() returns true, and whose escapedMany() does not depend on the
+  // point.
+  virtual void sampleArrays(std::span<const uint32_t> u, const uint32_t* v, LightArrays& out) const;
+  virtual void escapedArrays(const RayArrays& rays, size_t count, LightArrays& out) const;
+  virtual void backgroundArrays(const RayArrays& rays, size_t count, LightArrays& out) const;
 
   // Specular lobes with a GGX alpha below this are treated as mirrors: they see background(), and
   // sample() does not light them. The scene's own lamps light them like all other lobes.

@@ -37,11 +37,9 @@ class GridTable {
   GridTable() : values_((size_t(kNodes) * ...)) {}
 
   // The value at the node with these indices.
-  Value& node(const std::array<int, kDimensions>& indices) {
-    size_t offset = 0;
-    for (size_t d = 0; d < kDimensions; ++d)
-      offset = offset * size_t(kSize[d]) + size_t(indices[d]);
-    return values_[offset];
+  Value& node(const std::array<int, kDimensions>& indices) { return values_[offsetOf(indices)]; }
+  const Value& node(const std::array<int, kDimensions>& indices) const {
+    return values_[offsetOf(indices)];
   }
 
   // Multilinear interpolation, along the last dimension first, by mix(a, b, blend): glm::mix, or an
@@ -65,6 +63,13 @@ class GridTable {
   }
 
  private:
+  static size_t offsetOf(const std::array<int, kDimensions>& indices) {
+    size_t offset = 0;
+    for (size_t d = 0; d < kDimensions; ++d)
+      offset = offset * size_t(kSize[d]) + size_t(indices[d]);
+    return offset;
+  }
+
   // `offset`: index of the line, plane, ... chosen by the dimensions before kDimension.
   template <size_t kDimension>
   Value mixAlong(const Position& position, size_t offset) const {

@@ -6,6 +6,8 @@
 #include <immintrin.h>
 
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "math/vec.h"
@@ -39,26 +41,78 @@ struct LanesOf<Float8> {
     for (int k = 0; k < kCount; ++k) result[k] = p[index[k]];
     return result;
   }
+  // Column c in element c, of the rows of four numbers that begin at `rows`, one for each lane.
+  static std::array<Float8, 4> columns4(const std::array<const float*, kCount>& rows) {
+    const auto both = [&](int lane) {  // two rows, four lanes apart
+      return Float8(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows[lane])),
+                                         _mm_loadu_ps(rows[lane + 4]), 1));
+    };
+    const Float8 a = both(0), b = both(1), c = both(2), d = both(3);
+    const Float8 ab0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
+                 ab2 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15),
+                 cd0 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13),
+                 cd2 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+    return {__builtin_shufflevector(ab0, cd0, 0, 1, 8, 9, 4, 5, 12, 13),
+            __builtin_shufflevector(ab0, cd0, 2, 3, 10, 11, 6, 7, 14, 15),
+            __builtin_shufflevector(ab2, cd2, 0, 1, 8, 9, 4, 5, 12, 13),
+            __builtin_shufflevector(ab2, cd2, 2, 3, 10, 11, 6, 7, 14, 15)};
+  }
   // Column c in element c, of the rows of eight numbers that begin at `rows`, one for each lane.
   static std::array<Float8, 8> columns(const std::array<const float*, kCount>& rows) {
-    const auto half = [&](int lane, int first) {  // of two rows, four lanes apart
-      return Float8(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows[lane] + first)),
-                                         _mm_loadu_ps(rows[lane + 4] + first), 1));
-    };
-    std::array<Float8, 8> result;
-    for (int first = 0; first < 8; first += 4) {
-      const Float8 a = half(0, first), b = half(1, first), c = half(2, first), d = half(3, first);
-      const Float8 ab0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
-                   ab2 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15),
-                   cd0 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13),
-                   cd2 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-      result[first] = __builtin_shufflevector(ab0, cd0, 0, 1, 8, 9, 4, 5, 12, 13);
-      result[first + 1] = __builtin_shufflevector(ab0, cd0, 2, 3, 10, 11, 6, 7, 14, 15);
-      result[first + 2] = __builtin_shufflevector(ab2, cd2, 0, 1, 8, 9, 4, 5, 12, 13);
-      result[first + 3] = __builtin_shufflevector(ab2, cd2, 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-    return result;
+    std::array<const float*, kCount> second;
+    for (size_t lane = 0; lane < kCount; ++lane) second[lane] = rows[lane] + 4;
+    const auto a = columns4(rows), b = columns4(second);
+    return {a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]};
   }
+};
+
+// Arrays of numbers that are processed in lanes.
+
+inline Float8 loadLanes(const float* from) { return Float8(_mm256_loadu_ps(from)); }
+inline Int8 loadLanes(const int32_t* from) {
+  return Int8(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
+}
+inline void storeLanes(float* to, Float8 v) { _mm256_storeu_ps(to, __m256(v)); }
+inline void storeLanes(int32_t* to, Int8 v) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), __m256i(v));
+}
+
+// A bit for each lane whose condition (-1 or 0) holds.
+inline unsigned bitsOf(Int8 condition) {
+  return unsigned(_mm256_movemask_ps(__m256(Float8(condition))));
+}
+// The condition of the first `count` lanes.
+inline Int8 firstLanes(size_t count) { return Int8{0, 1, 2, 3, 4, 5, 6, 7} < int32_t(count); }
+
+// Stores the lanes of `bits` one after the other; writes eight numbers.
+class LanePacking {
+ public:
+  explicit LanePacking(unsigned bits) : order_(kOrders[bits]), count_(std::popcount(bits)) {}
+
+  size_t count() const { return size_t(count_); }
+  void store(float* to, Float8 v) const {
+    storeLanes(to, Float8(_mm256_permutevar8x32_ps(__m256(v), __m256i(indices()))));
+  }
+  void store(int32_t* to, Int8 v) const {
+    storeLanes(to, Int8(_mm256_permutevar8x32_epi32(__m256i(v), __m256i(indices()))));
+  }
+
+ private:
+  Int8 indices() const {
+    return Int8(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(&order_))));
+  }
+
+  // By bits: the numbers of the lanes, a byte each.
+  static constexpr std::array<uint64_t, 256> kOrders = [] {
+    std::array<uint64_t, 256> orders{};
+    for (unsigned bits = 0; bits < orders.size(); ++bits)
+      for (unsigned lane = 0, at = 0; lane < 8; ++lane)
+        if (bits >> lane & 1) orders[bits] |= uint64_t(lane) << (8 * at++);
+    return orders;
+  }();
+
+  uint64_t order_;
+  int count_;
 };
 
 }  // namespace chromeball

@@ -114,6 +114,12 @@ class PixelSampler {
     if (d < dimensions_) return point_[d] ^ shifts_[d];
     return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: not stratified
   }
+  // The numbers of the vertex's block, kPerVertex of them.
+  void vertexBits(uint32_t* out) const {
+    const bool isTabulated = base_ + dimension::kPerVertex <= dimensions_;
+    for (int d = 0; d < dimension::kPerVertex; ++d)
+      out[d] = isTabulated ? point_[base_ + d] ^ shifts_[base_ + d] : bits(d);
+  }
   float get1(int d) const { return toUnit(bits(d)); }
   // A number with 53 bits, to choose among more than 2^24 items; the lower 21 bits are not
   // stratified.

@@ -62,6 +62,40 @@ struct Lanes3 {
   F x, y, z;
 };
 
+template <class F>
+Lanes3<F> operator+(const Lanes3<F>& a, const Lanes3<F>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class F>
+Lanes3<F> operator-(const Lanes3<F>& a, const Lanes3<F>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class F>
+Lanes3<F> operator*(const Lanes3<F>& a, const Lanes3<F>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+template <class F>
+Lanes3<F> operator*(F factor, const Lanes3<F>& v) {
+  return {factor * v.x, factor * v.y, factor * v.z};
+}
+template <class F>
+F dot(const Lanes3<F>& a, const Lanes3<F>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class F>
+Lanes3<F> cross(const Lanes3<F>& a, const Lanes3<F>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class F>
+Lanes3<F> normalized(const Lanes3<F>& v) {
+  return (1 / LanesOf<F>::squareRoot(dot(v, v))) * v;
+}
+// For each lane, as condition ? a : b.
+template <class Condition, class F>
+Lanes3<F> chosen(const Condition& condition, const Lanes3<F>& a, const Lanes3<F>& b) {
+  return {condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z};
+}
+
 inline Lanes3<float> lanesOf(const vec3& v) { return {v.x, v.y, v.z}; }
 inline vec3 vectorOf(const Lanes3<float>& v) { return {v.x, v.y, v.z}; }
 

@@ -2,7 +2,6 @@
 #include "render/pixel_renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
 #include <limits>
@@ -127,36 +126,24 @@ void PixelRenderer::endBlocks(PixelWorker& worker, size_t count) const {
   worker.blockCount -= count;
 }
 
-// Generates and traces up to PathBatch::kMaxPaths camera rays.
+// Generates and traces camera rays.
 void PixelRenderer::traceCameraRays(PixelSampler& sampler, std::span<CameraSample> cameras) const {
-  std::array<Ray, PathBatch::kMaxPaths> rays;
-  std::array<uint32_t, PathBatch::kMaxPaths> keys;
-  std::array<std::optional<Hit>, PathBatch::kMaxPaths> hits;
-  const size_t count = cameras.size();
-  for (size_t i = 0; i < count; ++i) {
-    cameras[i].start(sampler);
+  for (CameraSample& camera : cameras) {
+    camera.start(sampler);
     const vec2 offset = sampler.get2(dimension::kPixel);
-    const float u = (float(cameras[i].x) + offset.x) / float(settings_.width);
-    const float v = (float(cameras[i].y) + offset.y) / float(settings_.height);
-    Ray& ray = rays[i];
+    const float u = (float(camera.x) + offset.x) / float(settings_.width);
+    const float v = (float(camera.y) + offset.y) / float(settings_.height);
+    Ray& ray = camera.ray;
     if (drawsTimes_) ray.time = sampler.time();
-    const auto aim = [&](const CameraRays& camera) {
-      if (camera.hasLens())
-        camera.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
+    const auto aim = [&](const CameraRays& rays) {
+      if (rays.hasLens())
+        rays.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
       else
-        camera.ray(u, v, ray.origin, ray.direction);
+        rays.ray(u, v, ray.origin, ray.direction);
     };
     moving_ ? aim(moving_->at(ray.time)) : aim(cameraRays_);
-    sampler.startVertex(0);  // the key that other surfaces at the place of the hit are met with
-    keys[i] = sampler.sampleKey();
   }
-  world_.accel.intersect(std::span(rays).first(count), std::span(keys).first(count),
-                         Accel::Coherence::High, std::span(hits).first(count),
-                         integrator_.visible());
-  for (size_t i = 0; i < count; ++i) {
-    cameras[i].ray = rays[i];
-    cameras[i].hit = hits[i];
-  }
+  findFirstHits(world_, cameras, integrator_.visible(), sampler);
 }
 
 float PixelRenderer::wideningOf(const SampleBlock& block, uint32_t index) const {
@@ -171,9 +158,7 @@ float PixelRenderer::wideningOf(const SampleBlock& block, uint32_t index) const 
 void PixelRenderer::traceSamples(PixelWorker& worker) const {
   const auto cameras = std::span(worker.cameras).first(worker.sampleCount);
   const auto samples = std::span(worker.samples).first(worker.sampleCount);
-  for (size_t first = 0; first < cameras.size(); first += PathBatch::kMaxPaths)
-    traceCameraRays(worker.context.sampler,
-                    cameras.subspan(first, std::min(PathBatch::kMaxPaths, cameras.size() - first)));
+  traceCameraRays(worker.context.sampler, cameras);
   std::fill_n(worker.layers.begin(), cameras.size() * layerCount_, Rgb(0));
   integrator_.sampleMany(cameras, worker.context, samples);
   for (size_t k = 0; k < cameras.size(); ++k)

@@ -41,11 +41,17 @@ struct SpecularAlbedo {
 // A table over perceptual roughness r = sqrt(alpha) and the cosine mu of the viewing angle. 32 x 64
 // nodes, 16 KB; takes 0.12 s of one core to build, on all cores.
 class EnergyTable {
-  static constexpr int kRoughnesses = 32, kAngles = 64;
-  using Grid = GridTable<SpecularAlbedo, kRoughnesses, kAngles>;
-
  public:
+  static constexpr int kRoughnesses = 32, kAngles = 64;
+
   EnergyTable();
+
+  // Nodes of the table, and of the averages over angles; the next in memory is of the next angle,
+  // or roughness.
+  const SpecularAlbedo& node(int roughness, int angle) const {
+    return grid_.node({roughness, angle});
+  }
+  const SpecularAlbedo& averageNode(int roughness) const { return averages_.node({roughness}); }
 
   // One roughness, ready for any angle. The table must outlive it.
   class Row {
@@ -55,6 +61,7 @@ class EnergyTable {
 
    private:
     friend class EnergyTable;
+    using Grid = GridTable<SpecularAlbedo, kRoughnesses, kAngles>;
     Row(const Grid& grid, GridPosition roughness, const SpecularAlbedo& average)
         : grid_(&grid), roughness_(roughness), average_(average) {}
 
@@ -65,7 +72,7 @@ class EnergyTable {
   Row row(float roughness) const;
 
  private:
-  Grid grid_;
+  GridTable<SpecularAlbedo, kRoughnesses, kAngles> grid_;
   GridTable<SpecularAlbedo, kRoughnesses> averages_;
 };
 

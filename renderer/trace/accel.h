@@ -21,6 +21,8 @@ namespace chromeball {
 
 class BuiltGeometry;
 struct FilterUse;
+struct HitArrays;
+struct RayArrays;
 
 // Embree's BVH over a scene's instances. A mesh with several instances is built once. Filter
 // functions handle alpha (masked and blended surfaces), so that the path loop need not, and let
@@ -58,6 +60,10 @@ class Accel {
   enum class Coherence { None, High };
   void intersect(std::span<const Ray> rays, std::span<const uint32_t> keys, Coherence coherence,
                  std::span<std::optional<Hit>> hits, RayMask mask = kAllInstances) const;
+
+  // The same for the first `count` rays of the arrays (trace/hit_arrays.h), at time 0.
+  void intersect(const RayArrays& rays, size_t count, std::span<const uint32_t> keys,
+                 Coherence coherence, HitArrays& hits, RayMask mask) const;
 
   // Calls visit(hit) for all other surfaces at the place of `surface`, which the ray has hit: the
   // surfaces that a ray continuing from Surface::rayOrigin() on its other side would miss. `hit`
@@ -97,6 +103,8 @@ class Accel {
   // The same for several rays that start in air.
   void transmittance(std::span<const Ray> rays, std::span<Rgb> transmittances,
                      RayMask mask = kAllInstances) const;
+  // The same for the first rays of the arrays, at time 0.
+  void transmittance(const RayArrays& rays, std::span<Rgb> transmittances, RayMask mask) const;
 
  private:
   using VisitHit = void (*)(const Hit&, void*);
@@ -112,6 +120,13 @@ class Accel {
                        Coherence coherence, std::span<std::optional<Hit>> hits, RayMask mask) const;
   template <size_t kRays>
   void occludedPacket(std::span<const Ray> rays, std::span<Rgb> transmittances, RayMask mask) const;
+  template <size_t kRays>
+  void intersectArrays(const RayArrays& rays, size_t begin, size_t count,
+                       std::span<const uint32_t> keys, Coherence coherence, HitArrays& hits,
+                       RayMask mask) const;
+  template <size_t kRays>
+  void occludedArrays(const RayArrays& rays, size_t begin, std::span<Rgb> transmittances,
+                      RayMask mask) const;
   bool closest(const Ray& ray, uint32_t key, RayMask mask, Hit& hit) const;
   void resolveEdge(Ray ray, uint32_t key, RayMask mask, Hit& hit) const;
 

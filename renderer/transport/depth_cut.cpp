@@ -53,9 +53,9 @@ bool PathTracer::limitKinds(const PathState& state, Bsdf& bsdf) const {
   return kept.diffuse || kept.specular;
 }
 
-bool PathTracer::isFollowed(DepthLimit limit, const PathContext& context) {
+bool PathTracer::isFollowed(DepthLimit limit, uint32_t key) {
   constexpr uint64_t kPurpose = 0x637574;  // separate random stream
-  return hash(context.sampler.sampleKey(), kPurpose) % intervalOf(limit) == 0;
+  return hash(key, kPurpose) % intervalOf(limit) == 0;
 }
 
 // Continues one in intervalOf() of the paths that reach a limit twice with the same random numbers:
@@ -63,7 +63,7 @@ bool PathTracer::isFollowed(DepthLimit limit, const PathContext& context) {
 [[gnu::noinline]] void PathTracer::followTwice(PathState& state, const Hit& hit, DepthLimit limit,
                                                PathContext& context) const {
   state.cutIsEstimated = true;
-  if (!isFollowed(limit, context)) return;
+  if (!isFollowed(limit, context.sampler.sampleKey())) return;
   PathSettings limited = settings_;
   limited.estimateDepthCut = false;
   PathSettings farther = limited;

@@ -20,7 +20,7 @@ bool PathTracer::endsAtAnyHit(const PathState& state, const PathContext& context
   return surfacesEndPaths_ && state.bounces() == settings_.maxDepth && !state.isDelta &&
          !state.place && !state.first &&
          (!settings_.estimateDepthCut || state.cutIsEstimated ||
-          !isFollowed(DepthLimit::Depth, context));
+          !isFollowed(DepthLimit::Depth, context.sampler.sampleKey()));
 }
 
 bool PathTracer::escapes(const Ray& ray, PathContext& context) const {

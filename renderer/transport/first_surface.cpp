@@ -13,13 +13,13 @@ Bsdf FirstSurface::bsdf(const PathTracer& tracer, const PathState& state) const 
               tracer.mirrorAlpha());
 }
 
-FirstHit firstHitAt(const Instance& instance, const Surface& surface, const MaterialPoint& material,
+FirstHit firstHitAt(const Instance& instance, const vec3& normal, const Rgb& baseColor,
                     float length) {
   FirstHit first;
   first.hit = true;
   first.depth = length;
-  first.albedo = first.seen = material.baseColor;
-  first.normal = surface.normal;
+  first.albedo = first.seen = baseColor;
+  first.normal = normal;
   first.material = instance.material, first.node = instance.node;
   return first;
 }
@@ -35,7 +35,9 @@ std::optional<FirstSurface> firstSurface(const PathTracer& tracer, PathState& st
   FirstSurface found(scene, instance,
                      surfaceAt(scene, instance, visible->triangle, visible->barycentric,
                                -state.ray.direction, crossSection, state.ray.time));
-  if (state.first) *state.first = firstHitAt(instance, found.surface, found.material, state.length);
+  if (state.first)
+    *state.first =
+        firstHitAt(instance, found.surface.normal, found.material.baseColor, state.length);
   return found;
 }
 

@@ -18,7 +18,7 @@ struct FirstSurface {
 };
 
 // What the layers of the first hit show of a surface. `length`: of the path to it.
-FirstHit firstHitAt(const Instance& instance, const Surface& surface, const MaterialPoint& material,
+FirstHit firstHitAt(const Instance& instance, const vec3& normal, const Rgb& baseColor,
                     float length);
 
 // The visible surface that the camera path `state` meets first, `hit` being the closest hit of its

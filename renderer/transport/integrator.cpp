@@ -5,13 +5,58 @@
 #include <new>
 
 #include "transport/light_groups.h"
+#include "transport/wide_paths.h"
 
 namespace chromeball {
 
+namespace {
+
+// Up to kMostInArrays.
+void findHits(const Accel& accel, std::span<CameraSample> cameras, std::span<const uint32_t> keys,
+              RayMask visible) {
+  RayArrays rays;
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    rays.origin.set(i, cameras[i].ray.origin);
+    rays.direction.set(i, cameras[i].ray.direction);
+  }
+  HitArrays hits;
+  accel.intersect(rays, cameras.size(), keys, Accel::Coherence::High, hits, visible);
+  for (size_t i = 0; i < cameras.size(); ++i) cameras[i].hit = hits.at(i);
+}
+
+// The same of rays at different times.
+void findMovingHits(const Accel& accel, std::span<CameraSample> cameras,
+                    std::span<const uint32_t> keys, RayMask visible) {
+  std::array<Ray, kMostInArrays> rays;
+  std::array<std::optional<Hit>, kMostInArrays> hits;
+  const size_t count = cameras.size();
+  for (size_t i = 0; i < count; ++i) rays[i] = cameras[i].ray;
+  accel.intersect(std::span(rays).first(count), keys, Accel::Coherence::High,
+                  std::span(hits).first(count), visible);
+  for (size_t i = 0; i < count; ++i) cameras[i].hit = hits[i];
+}
+
+}  // namespace
+
+void findFirstHits(const World& world, std::span<CameraSample> cameras, RayMask visible,
+                   PixelSampler& sampler) {
+  std::array<uint32_t, kMostInArrays> keys;
+  const auto find = world.scene.moves ? findMovingHits : findHits;
+  for (size_t first = 0; first < cameras.size(); first += kMostInArrays) {
+    const auto some = cameras.subspan(first, std::min(kMostInArrays, cameras.size() - first));
+    for (size_t i = 0; i < some.size(); ++i) {
+      some[i].start(sampler);
+      sampler.startVertex(0);  // the key that other surfaces at the place of the hit are met with
+      keys[i] = sampler.sampleKey();
+    }
+    find(world.accel, some, std::span(keys).first(some.size()), visible);
+  }
+}
+
 void PathIntegrator::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
                                 std::span<Sample> samples) const {
-  const PathBatch& batch = PathBatch::traced(cameras, tracer_, context);
-  for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(batch.radiance(i));
+  const std::span<const Rgb> radiances = PathBatch::traced(cameras, tracer_, context);
+  for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(radiances[i]);
 }
 
 size_t Integrator::batch() const { return PathBatch::kMaxPaths; }
@@ -30,15 +75,26 @@ struct PathBatch::Task {
   RayMask visible() const { return tracer.settings().visible; }
 };
 
-const PathBatch& PathBatch::traced(std::span<const CameraSample> cameras, const PathTracer& tracer,
-                                   PathContext& context) {
+std::span<const Rgb> PathBatch::traced(std::span<const CameraSample> cameras,
+                                       const PathTracer& tracer, PathContext& context) {
   thread_local PathBatch batch;
+  thread_local WidePaths wide;
+  thread_local std::vector<Rgb> radiances;
+  radiances.resize(std::max(cameras.size(), radiances.size()));
   batch.clear();
-  for (const CameraSample& camera : cameras) batch.add(camera);
   context.counts.camera += cameras.size();
-  batch.follow(tracer, context);
-  for (size_t i = 0; i < cameras.size(); ++i) context.depthCut.addFound(batch.radiance(i));
-  return batch;
+  if (cameras.size() <= WidePaths::kMaxPaths && WidePaths::serves(tracer, context)) {
+    wide.follow(cameras, tracer, context, batch, radiances);
+    batch.follow(tracer, context);
+    for (size_t k = 0; k < wide.left().size(); ++k) radiances[wide.left()[k]] = batch.radiance(k);
+  } else {
+    for (const CameraSample& camera : cameras) batch.add(camera);
+    batch.follow(tracer, context);
+    for (size_t i = 0; i < cameras.size(); ++i) radiances[i] = batch.radiance(i);
+  }
+  const auto found = std::span<const Rgb>(radiances).first(cameras.size());
+  for (const Rgb& radiance : found) context.depthCut.addFound(radiance);
+  return found;
 }
 
 void PathBatch::add(const CameraSample& camera, const PathState& state,

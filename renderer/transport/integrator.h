@@ -32,6 +32,10 @@ struct CameraSample {
   }
 };
 
+// Finds the closest hits of the cameras' rays.
+void findFirstHits(const World& world, std::span<CameraSample> cameras, RayMask visible,
+                   PixelSampler& sampler);
+
 // A sample of a pixel. A defect excludes it from the mean.
 struct Sample {
   Rgb radiance{0};
@@ -99,9 +103,10 @@ class PathBatch {
   // Unless LightSource::batch() is larger.
   static constexpr size_t kMaxPaths = LightSource::kMaxMany;
 
-  // Traces the paths of camera rays, in a batch of this thread: valid until the next call.
-  static const PathBatch& traced(std::span<const CameraSample> cameras, const PathTracer& tracer,
-                                 PathContext& context);
+  // Traces the paths of camera rays, in lanes where that is possible (wide_paths.h). Returns their
+  // radiances, in memory of this thread: valid until its next call.
+  static std::span<const Rgb> traced(std::span<const CameraSample> cameras,
+                                     const PathTracer& tracer, PathContext& context);
 
   // The path of a camera ray, which must outlive the tracing.
   void add(const CameraSample& camera) { add(camera, camera.path(), camera.hit); }

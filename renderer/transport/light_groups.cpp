@@ -88,10 +88,10 @@ void GroupIntegrator::sampleMany(std::span<const CameraSample> cameras, PathCont
                                  std::span<Sample> samples) const {
   GroupSums sums(groups_, context.lightRadiances);
   context.groups = &sums;
-  const PathBatch& batch = PathBatch::traced(cameras, tracer_, context);
+  const std::span<const Rgb> radiances = PathBatch::traced(cameras, tracer_, context);
   context.groups = nullptr;
   for (size_t i = 0; i < cameras.size(); ++i) {
-    const Rgb whole = batch.radiance(i), kept = context.clamp(whole);
+    const Rgb whole = radiances[i], kept = context.clamp(whole);
     samples[i] = kept;
     if (kept == whole || !isFinite(whole)) continue;
     const float scale = maxComponent(absolute(kept)) / maxComponent(absolute(whole));

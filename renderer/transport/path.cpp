@@ -256,7 +256,7 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
 
   MaterialPoint material = materialAt(scene, surface);
   if (isFirst)
-    *state.first = firstHitAt(instance, surface, material, state.length);
+    *state.first = firstHitAt(instance, surface.normal, material.baseColor, state.length);
   else if (state.first) [[unlikely]]
     SeenFeature::noteSurface(state, material);
   if (ends) return passAtLimit(scene, state, instance, surface);

@@ -125,12 +125,16 @@ class PathTracer {
   const DirectLight& direct() const { return direct_; }
   const PathSettings& settings() const { return settings_; }
   float mirrorAlpha() const { return mirrorAlpha_; }
+  // Whether paths without bounces left end, without light, at each surface of the scene.
+  bool surfacesEndPaths() const { return surfacesEndPaths_; }
+  // Whether a path with this key (PixelSampler::sampleKey()) is one of those that
+  // estimateDepthCut() follows beyond the limit.
+  static bool isFollowed(DepthLimit limit, uint32_t key);
 
  private:
   // `weight`: output, the weight of the path that continues, if that is chosen at random.
   std::optional<Hit> metAt(PathState& state, const Hit& hit, const Surface& surface, float& weight,
                            PathContext& context) const;
-  // Whether paths without bounces left end, without light, at each surface of the scene.
   static bool surfacesEndPaths(const World& world);
   bool sharesPlace(const Hit& hit) const {
     return world_.sharedPlaces.contains(hit.instance, hit.triangle);
@@ -153,8 +157,6 @@ class PathTracer {
   static void noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                          const PathContext& context);
   std::optional<DepthLimit> reachedLimit(const PathState& state, const Hit& hit) const;
-  // Whether this is one of the paths that estimateDepthCut() follows beyond the limit.
-  static bool isFollowed(DepthLimit limit, const PathContext& context);
   void followTwice(PathState& state, const Hit& hit, DepthLimit limit, PathContext& context) const;
 
   const World& world_;
@@ -169,9 +171,10 @@ class PathTracer {
 // Russian roulette with survival probability min(largest throughput channel x guideRatio, 1);
 // survivors are divided by it, so that the estimate stays unbiased. The first two bounces always
 // survive.
+inline constexpr int kFirstRoulette = 2;  // the depth
 inline bool survivesRoulette(Rgb& throughput, float guideRatio, int depth,
                              const PixelSampler& sampler) {
-  if (depth < 2) return true;
+  if (depth < kFirstRoulette) return true;
   const float survival = std::min(maxComponent(throughput) * guideRatio, 1.0f);
   if (sampler.get1(dimension::kRoulette) >= survival) return false;  // NaN survives, to be counted
   throughput /= survival;

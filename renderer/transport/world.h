@@ -12,6 +12,7 @@
 #include "shading/bsdf_tables.h"
 #include "trace/accel.h"
 #include "trace/shared_places.h"
+#include "transport/plain_surfaces.h"
 
 namespace chromeball {
 
@@ -31,6 +32,7 @@ struct World {
         sources(described),
         sharedPlaces(accel),
         bsdfTables(tables),
+        plain(described),
         hasBodies(std::ranges::any_of(described.materials, &Material::isBody)) {}
 
   const Scene& scene;
@@ -38,7 +40,8 @@ struct World {
   const SceneSources sources;
   const SharedPlaces sharedPlaces;
   const BsdfTables bsdfTables;  // the tables that its materials need
-  const bool hasBodies;         // of glass
+  const PlainSurfaces plain;
+  const bool hasBodies;  // of glass
 };
 
 }  // namespace chromeball

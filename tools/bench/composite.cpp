@@ -22,9 +22,9 @@ void differential(benchmark::State& state, demo::Finish finish) {
     const double start = cpuSeconds();
     plainSum = sumOverSamples(
         camera, world.accel, [&](std::span<const CameraSample> cameras, PathContext& context) {
-          const PathBatch& batch = PathBatch::traced(cameras, worlds.whole, context);
+          const std::span<const Rgb> radiances = PathBatch::traced(cameras, worlds.whole, context);
           Rgb sum(0);
-          for (size_t i = 0; i < cameras.size(); ++i) sum += batch.radiance(i);
+          for (size_t i = 0; i < cameras.size(); ++i) sum += radiances[i];
           return sum;
         });
     const double middle = cpuSeconds();

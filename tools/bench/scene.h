@@ -116,9 +116,9 @@ inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
   return sumOverSamples(
       s.scene.cameras.front(), s.world.accel,
       [&](std::span<const CameraSample> cameras, PathContext& context) {
-        const PathBatch& batch = PathBatch::traced(cameras, tracer, context);
+        const std::span<const Rgb> radiances = PathBatch::traced(cameras, tracer, context);
         Rgb sum(0);
-        for (size_t i = 0; i < cameras.size(); ++i) sum += batch.radiance(i);
+        for (size_t i = 0; i < cameras.size(); ++i) sum += radiances[i];
         return sum;
       },
       log);

@@ -65,10 +65,10 @@ class BasisIntegrator : public Integrator {
     }
     GroupSums sums(groups_, context.lightRadiances, found.directed);
     context.groups = &sums;
-    const PathBatch& batch = PathBatch::traced(found.cameras, tracer_, context);
+    const std::span<const Rgb> radiances = PathBatch::traced(found.cameras, tracer_, context);
     context.groups = nullptr;
     for (size_t i = 0; i < cameras.size(); ++i) {
-      samples[i] = batch.radiance(i);
+      samples[i] = radiances[i];
       if (!samples[i].defect)
         add(cameras[i].x, cameras[i].y - top_, found.directed[i], found.cameras[i].layers);
     }

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "transport/wide_paths.h"
+
+#include <algorithm>
+
+#include "transport/first_surface.h"
+
+namespace chromeball {
+namespace {
+
+using L = LanesOf<Float8>;
+using Vector = Lanes3<Float8>;
+constexpr size_t kWidth = L::kCount;
+
+// As toUnit().
+Float8 unitsOf(const LaneArray<uint32_t>& bits, size_t i) {
+  const Int8 b = Int8(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(&bits[i])));
+  return L::toFloat(Int8(_mm256_srli_epi32(__m256i(b), 8))) * 0x1p-24f;
+}
+
+// As misWeight(), bsdfSampleWeight() and lightSampleWeight().
+Float8 misWeight(Mis mis, Float8 own, Float8 other) {
+  const Float8 ratio = other / own;
+  return 1 / (1 + (mis == Mis::Power ? ratio * ratio : ratio));
+}
+Float8 weightOfBsdfSample(Mis mis, Float8 bsdfPdf, Float8 lightPdf) {
+  const Float8 both = mis == Mis::Off ? Float8{} : misWeight(mis, bsdfPdf, lightPdf);
+  return lightPdf == 0 ? L::splat(1) : both;
+}
+Float8 weightOfLightSample(Mis mis, Float8 lightPdf, Float8 bsdfPdf) {
+  return mis == Mis::Off ? L::splat(1) : misWeight(mis, lightPdf, bsdfPdf);
+}
+
+Int8 isBlack(const Vector& c) { return (c.x == 0) & (c.y == 0) & (c.z == 0); }
+
+}  // namespace
+
+struct WidePaths::Task {
+  std::span<const CameraSample> cameras;
+  const PathTracer& tracer;
+  PathContext& context;
+  PathBatch& rest;
+  std::span<Rgb> radiances;
+
+  const World& world() const { return tracer.world(); }
+  const PathSettings& settings() const { return tracer.settings(); }
+  const LightSource& lighting() const { return tracer.lighting(); }
+};
+
+bool WidePaths::serves(const PathTracer& tracer, const PathContext& context) {
+  const World& world = tracer.world();
+  const PathSettings& s = tracer.settings();
+  return world.plain.any() && !world.scene.moves && world.sources.all.empty() &&
+         tracer.mirrorAlpha() == 0 && tracer.lighting().sampleMany({}, {}) && s.maxDepth > 0 &&
+         s.maxTransmissionDepth > 0 && !s.limitsKinds() && s.compared == s.visible &&
+         (!s.guide || s.guide->empty()) && (!s.caustics || s.caustics->empty()) &&
+         !context.groups && !context.records && !context.log;
+}
+
+void WidePaths::Paths::copy(size_t from, size_t to) {
+  if (from == to) return;
+  const auto move = [&](auto&... arrays) { ((arrays[to] = arrays[from]), ...); };
+  const auto move3 = [&](LaneArrays3& v) { move(v.x, v.y, v.z); };
+  move3(rays.origin), move3(rays.direction), move3(throughput);
+  move(pdf, length, id, scattered, hits.instance, hits.triangle, hits.u, hits.v, hits.distance);
+}
+
+void WidePaths::start(const Task& task) {
+  depth_ = 0;
+  left_.clear();
+  paths_->size = task.cameras.size();
+  for (size_t i = 0; i < paths_->size; ++i) {
+    const CameraSample& camera = task.cameras[i];
+    task.radiances[i] = Rgb(0);
+    paths_->id[i] = int32_t(i);
+    paths_->rays.origin.set(i, camera.ray.origin);
+    paths_->rays.direction.set(i, camera.ray.direction);
+    paths_->throughput.set(i, Rgb(1));
+    paths_->pdf[i] = paths_->length[i] = 0;
+    paths_->scattered[i] = 0;
+    paths_->hits.instance[i] = HitArrays::kNone;
+    if (camera.hit) paths_->hits.set(i, *camera.hit);
+  }
+}
+
+void WidePaths::follow(std::span<const CameraSample> cameras, const PathTracer& tracer,
+                       PathContext& context, PathBatch& rest, std::span<Rgb> radiances) {
+  const Task task{cameras, tracer, context, rest, radiances};
+  start(task);
+  for (;;) {
+    endEscaped(task);
+    if (depth_ == task.settings().maxDepth) return endAtLimit(task);
+    leaveLanes(task);
+    if (paths_->size == 0) return;
+    fillVertices(task);
+    noteFirst(task);
+    drawNumbers(task);
+    task.lighting().sampleArrays(std::span(numbers_[dimension::kLight]).first(paths_->size),
+                                 numbers_[dimension::kLight + 1].data(), lights_);
+    scatter(task);
+    traceShadowRays(task);
+    ++depth_;
+    std::swap(paths_, next_);
+    if (depth_ == task.settings().maxDepth && tracer.surfacesEndPaths())
+      traceLastRays(task);
+    else
+      traceRays(task);
+  }
+}
+
+void WidePaths::setKeys(const Task& task) {
+  PixelSampler& sampler = task.context.sampler;
+  for (size_t k = 0; k < paths_->size; ++k) {
+    task.cameras[size_t(paths_->id[k])].start(sampler);
+    sampler.startVertex(depth_);
+    keys_[k] = sampler.sampleKey();
+  }
+}
+
+void WidePaths::traceRays(const Task& task) {
+  setKeys(task);
+  task.world().accel.intersect(paths_->rays, paths_->size, std::span(keys_).first(paths_->size),
+                               Accel::Coherence::None, paths_->hits, task.settings().visible);
+}
+
+// As PathTracer::endsAtAnyHit().
+void WidePaths::traceLastRays(const Task& task) {
+  setKeys(task);
+  const Accel& accel = task.world().accel;
+  const RayMask visible = task.settings().visible;
+  accel.transmittance(paths_->rays, std::span(transmittances_).first(paths_->size), visible);
+  size_t kept = 0;
+  for (size_t k = 0; k < paths_->size; ++k) {
+    int32_t& instance = paths_->hits.instance[k];
+    instance = HitArrays::kNone;
+    if (isBlack(transmittances_[k])) {
+      if (!isFollowed(task, k)) continue;
+      Hit hit;
+      const Ray ray{paths_->rays.origin.at(k), paths_->rays.direction.at(k)};
+      if (accel.intersect(ray, keys_[k], hit, visible)) paths_->hits.set(k, hit);
+    }
+    paths_->copy(k, kept++);
+  }
+  paths_->size = kept;
+}
+
+// Whether the light beyond the limit of depth is estimated by this path.
+bool WidePaths::isFollowed(const Task& task, size_t path) const {
+  return task.settings().estimateDepthCut && PathTracer::isFollowed(DepthLimit::Depth, keys_[path]);
+}
+
+void WidePaths::endAtLimit(const Task& task) {
+  setKeys(task);
+  for (size_t k = 0; k < paths_->size; ++k)
+    if (kindOf(task, k) == PlainSurfaces::Kind::Other || isFollowed(task, k)) handOver(task, k);
+}
+
+PlainSurfaces::Kind WidePaths::kindOf(const Task& task, size_t path) const {
+  return task.world().plain.part(size_t(paths_->hits.instance[path])).kind;
+}
+
+// Paths whose first hit notes what is seen in smooth mirrors leave the lanes there.
+bool WidePaths::notesMirrored(const Task& task, size_t path) const {
+  return depth_ > 0 && paths_->pdf[path] == 0 && task.cameras[size_t(paths_->id[path])].first;
+}
+
+void WidePaths::leaveLanes(const Task& task) {
+  size_t kept = 0;
+  for (size_t k = 0; k < paths_->size; ++k)
+    if (kindOf(task, k) == PlainSurfaces::Kind::Other || notesMirrored(task, k) ||
+        task.cameras[size_t(paths_->id[k])].widening > 0)
+      handOver(task, k);
+    else
+      paths_->copy(k, kept++);
+  paths_->size = kept;
+}
+
+void WidePaths::handOver(const Task& task, size_t k) {
+  const size_t id = size_t(paths_->id[k]);
+  const CameraSample& camera = task.cameras[id];
+  PathState state = camera.path();
+  state.ray.origin = paths_->rays.origin.at(k), state.ray.direction = paths_->rays.direction.at(k);
+  state.radiance = task.radiances[id];
+  state.throughput = paths_->throughput.at(k);
+  state.from = {state.ray.origin, state.ray.direction, nullptr, depth_ - 1};
+  state.pdf = paths_->pdf[k];
+  state.isDelta = state.pdf == 0;
+  state.lobes = state.isDelta ? Lobes::Narrow : Lobes::Broad;
+  state.depth = depth_;
+  state.scattered = paths_->scattered[k] != 0;
+  state.length = paths_->length[k];
+  task.rest.add(camera, state, paths_->hits.at(k));
+  left_.push_back(uint32_t(id));
+}
+
+void WidePaths::endEscaped(const Task& task) {
+  struct Escaped {
+    RayArrays rays;
+    LaneArrays3 throughput;
+    alignas(64) LaneArray<float> pdf;
+    std::array<uint32_t, kMaxPaths> id;
+    LightArrays found;
+  };
+  thread_local Escaped escaped;
+  size_t kept = 0, count = 0;
+  for (size_t k = 0; k < paths_->size; ++k)
+    if (paths_->hits.instance[k] != HitArrays::kNone) {
+      paths_->copy(k, kept++);
+    } else if (notesMirrored(task, k)) {
+      handOver(task, k);
+    } else {
+      escaped.rays.origin.set(count, paths_->rays.origin.at(k));
+      escaped.rays.direction.set(count, paths_->rays.direction.at(k));
+      escaped.throughput.set(count, paths_->throughput.at(k));
+      escaped.pdf[count] = paths_->pdf[k];
+      escaped.id[count++] = uint32_t(paths_->id[k]);
+    }
+  paths_->size = kept;
+  if (count == 0 || (depth_ == 0 && task.settings().hideProbe)) return;
+  if (depth_ == 0)
+    task.lighting().backgroundArrays(escaped.rays, count, escaped.found);
+  else
+    task.lighting().escapedArrays(escaped.rays, count, escaped.found);
+  for (size_t i = 0; i < count; i += kWidth) {
+    const Float8 pdf = loadLanes(&escaped.pdf[i]);
+    const Vector light = escaped.throughput.load(i) * escaped.found.light.load(i);
+    const Float8 weight =
+        weightOfBsdfSample(task.settings().mis, pdf, loadLanes(&escaped.found.pdf[i]));
+    escaped.found.light.store(i, chosen(pdf == 0, light, weight * light));
+  }
+  for (size_t k = 0; k < count; ++k) task.radiances[escaped.id[k]] += escaped.found.light.at(k);
+}
+
+void WidePaths::fillVertices(const Task& task) {
+  for (size_t k = 0; k < paths_->size; ++k) {
+    const Beam& beam = task.cameras[size_t(paths_->id[k])].beam;
+    crossSections_[k] = beam ? beam.crossSection(paths_->length[k] + paths_->hits.distance[k]) : 0;
+  }
+  vertices_.fill(task.world().scene, task.world().plain, paths_->rays, paths_->hits,
+                 std::span(crossSections_).first(paths_->size));
+  for (size_t k = 0; k < paths_->size; ++k) {
+    int32_t& isHidden = vertices_.isHidden[k];
+    isHidden &= -(paths_->pdf[k] == 0);
+    if (isHidden) [[unlikely]]
+      handOver(task, k);
+    paths_->length[k] += paths_->hits.distance[k];
+  }
+}
+
+void WidePaths::noteFirst(const Task& task) {
+  for (size_t k = 0; k < paths_->size; ++k) {
+    const size_t id = size_t(paths_->id[k]);
+    FirstHit* const first = task.cameras[id].first;
+    if (!first || vertices_.isHidden[k]) continue;
+    if (depth_ > 0) {
+      if (!first->direct) first->direct = task.radiances[id];
+      continue;
+    }
+    const Instance& instance = task.world().scene.instances[size_t(paths_->hits.instance[k])];
+    *first =
+        firstHitAt(instance, vertices_.normal.at(k), vertices_.baseColor.at(k), paths_->length[k]);
+  }
+}
+
+void WidePaths::drawNumbers(const Task& task) {
+  constexpr size_t kNumbers = dimension::kPerVertex;
+  static_assert(kNumbers == kWidth);
+  alignas(64) std::array<std::array<float, kNumbers>, kWidth> rows;  // bits
+  PixelSampler& sampler = task.context.sampler;
+  for (size_t i = 0; i < paths_->size; i += kWidth) {
+    std::array<const float*, kWidth> begins;
+    for (size_t k = 0; k < kWidth; ++k) {
+      begins[k] = rows[k].data();
+      if (i + k >= paths_->size) continue;
+      task.cameras[size_t(paths_->id[i + k])].start(sampler);
+      sampler.startVertex(depth_);
+      sampler.vertexBits(reinterpret_cast<uint32_t*>(rows[k].data()));
+    }
+    const auto columns = L::columns(begins);
+    for (size_t d = 0; d < kNumbers; ++d)
+      storeLanes(reinterpret_cast<int32_t*>(&numbers_[d][i]), Int8(columns[d]));
+  }
+}
+
+void WidePaths::scatter(const Task& task) {
+  shadows_.size = next_->size = 0;
+  for (size_t i = 0; i < paths_->size; i += kWidth) scatterLanes(task, i);
+  task.context.counts.bounce += next_->size;
+}
+
+// As PathTracer::scatterAs(), with DirectLight::deferDrawn().
+void WidePaths::scatterLanes(const Task& task, size_t i) {
+  const Int8 isHere = firstLanes(paths_->size - i) & ~loadLanes(&vertices_.isHidden[i]);
+  const Vector wo = L::splat(-1) * paths_->rays.direction.load(i);
+  const PlainBsdfLanes bsdf(vertices_.material(i), vertices_.normal.load(i),
+                            vertices_.geometricNormal.load(i), wo,
+                            task.world().bsdfTables.energy.get());
+  const Vector throughput = paths_->throughput.load(i);
+
+  const Vector toLight = lights_.direction.load(i);
+  const Float8 lightPdf = loadLanes(&lights_.pdf[i]);
+  const BsdfLanesValue value = bsdf.evaluate(toLight);
+  const Float8 weight = weightOfLightSample(task.settings().mis, lightPdf, value.pdf);
+  const LanePacking lit(bitsOf(isHere & (lightPdf > 0) & ~isBlack(value.fCos)));
+  const size_t s = shadows_.size;
+  shadows_.rays.origin.store(s, vertices_.rayOrigin(i, toLight), lit);
+  shadows_.rays.direction.store(s, toLight, lit);
+  shadows_.radiance.store(s, throughput * (weight * value.fCos) * lights_.light.load(i), lit);
+  lit.store(&shadows_.id[s], loadLanes(&paths_->id[i]));
+  shadows_.size += lit.count();
+
+  const BsdfLanesSample bounce = bsdf.sample(unitsOf(numbers_[dimension::kBsdf], i),
+                                             unitsOf(numbers_[dimension::kBsdf + 1], i),
+                                             unitsOf(numbers_[dimension::kLobe], i));
+  Vector weighted = throughput * bounce.weight;
+  Int8 goesOn = isHere & bounce.isValid;
+  if (depth_ >= kFirstRoulette) {  // as survivesRoulette()
+    const Float8 largest = larger(larger(weighted.x, weighted.y), weighted.z);
+    const Float8 survival = smaller(largest, L::splat(1));
+    goesOn &= ~(unitsOf(numbers_[dimension::kRoulette], i) >= survival);
+    weighted = {weighted.x / survival, weighted.y / survival, weighted.z / survival};
+  }
+  const LanePacking on(bitsOf(goesOn));
+  const size_t n = next_->size;
+  next_->rays.origin.store(n, vertices_.rayOrigin(i, bounce.wi), on);
+  next_->rays.direction.store(n, bounce.wi, on);
+  next_->throughput.store(n, weighted, on);
+  on.store(&next_->pdf[n], bounce.pdf);
+  on.store(&next_->length[n], loadLanes(&paths_->length[i]));
+  on.store(&next_->id[n], loadLanes(&paths_->id[i]));
+  on.store(&next_->scattered[n], loadLanes(&paths_->scattered[i]) | (bounce.pdf != 0));
+  next_->size += on.count();
+}
+
+void WidePaths::traceShadowRays(const Task& task) {
+  task.context.counts.shadow += shadows_.size;
+  task.world().accel.transmittance(shadows_.rays, std::span(transmittances_).first(shadows_.size),
+                                   task.settings().visible);
+  for (size_t k = 0; k < shadows_.size; ++k)
+    if (!chromeball::isBlack(transmittances_[k]))
+      task.radiances[size_t(shadows_.id[k])] += shadows_.radiance.at(k) * transmittances_[k];
+}
+
+}  // namespace chromeball
