@@ -87,9 +87,10 @@ inline Int8 firstLanes(size_t count) { return Int8{0, 1, 2, 3, 4, 5, 6, 7} < int
 // Stores the lanes of `bits` one after the other; writes eight numbers.
 class LanePacking {
  public:
-  explicit LanePacking(unsigned bits) : order_(kOrders[bits]), count_(std::popcount(bits)) {}
+  explicit LanePacking(unsigned bits) : bits_(bits), order_(kOrders[bits]) {}
 
-  size_t count() const { return size_t(count_); }
+  unsigned bits() const { return bits_; }
+  size_t count() const { return size_t(std::popcount(bits_)); }
   void store(float* to, Float8 v) const {
     storeLanes(to, Float8(_mm256_permutevar8x32_ps(__m256(v), __m256i(indices()))));
   }
@@ -111,8 +112,8 @@ class LanePacking {
     return orders;
   }();
 
+  unsigned bits_;
   uint64_t order_;
-  int count_;
 };
 
 }  // namespace chromeball

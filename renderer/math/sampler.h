@@ -101,31 +101,19 @@ class PixelSampler {
     }
   }
   void startSample(const PixelNumbers& pixel, uint32_t i) {
-    shifts_ = pixel.shifts.data(), key_ = pixel.key;
-    index_ = pixel.first + i * pixel.stride;
-    point_ = table_->point(index_);
+    sample_ = sampleAt(pixel, i);
     base_ = 0;
   }
   // Later dimensions are relative to the vertex's block.
-  void startVertex(int depth) { base_ = dimension::kVertex + depth * dimension::kPerVertex; }
+  void startVertex(int depth) { base_ = blockOf(depth); }
 
-  uint32_t bits(int d) const {
-    d += base_;
-    if (d < dimensions_) return point_[d] ^ shifts_[d];
-    return uint32_t(hash(key_, index_, uint64_t(d)));  // deep vertices: not stratified
-  }
-  // The numbers of the vertex's block, kPerVertex of them.
-  void vertexBits(uint32_t* out) const {
-    const bool isTabulated = base_ + dimension::kPerVertex <= dimensions_;
-    for (int d = 0; d < dimension::kPerVertex; ++d)
-      out[d] = isTabulated ? point_[base_ + d] ^ shifts_[base_ + d] : bits(d);
-  }
+  uint32_t bits(int d) const { return bitsOf(sample_, base_ + d); }
   float get1(int d) const { return toUnit(bits(d)); }
   // A number with 53 bits, to choose among more than 2^24 items; the lower 21 bits are not
   // stratified.
   double getFine1(int d) const {
     constexpr uint64_t kPurpose = 0x66696e65;  // separate random stream
-    const uint64_t low = hash(key_ ^ kPurpose, index_, uint64_t(d + base_)) >> 43;
+    const uint64_t low = hash(sample_.key ^ kPurpose, sample_.index, uint64_t(d + base_)) >> 43;
     return (double(bits(d)) + double(low) * 0x1p-21) * 0x1p-32;
   }
   vec2 get2(int d) const { return {get1(d), get1(d + 1)}; }
@@ -135,25 +123,51 @@ class PixelSampler {
   float time() const {
     constexpr uint64_t kPurpose = 0x74696d65;  // separate random stream
     const uint64_t order = hash(seed_, kPurpose);
-    const uint32_t index = owenScramble(index_, uint32_t(order));
+    const uint32_t index = owenScramble(sample_.index, uint32_t(order));
     return toUnit(owenScramble(sobol(index, 0), uint32_t(order >> 32)) ^
-                  uint32_t(hash(key_, kPurpose)));
+                  uint32_t(hash(sample_.key, kPurpose)));
   }
 
   // A key to hash for decisions that have no dimension of their own (stochastic alpha).
-  uint32_t sampleKey() const {
-    return uint32_t(key_) ^ (index_ * 0x9e3779b9u + uint32_t(base_) * 0x85ebca6bu);
+  uint32_t sampleKey() const { return keyOf(sample_, base_); }
+
+  // The same for samples of many paths at once, which keep what identifies them.
+  struct Sample {
+    const uint32_t *point = nullptr, *shifts = nullptr;  // of the table, and of the pixel
+    uint64_t key = 0;                                    // of the pixel
+    uint32_t index = 0;                                  // in the block
+  };
+  Sample sampleAt(const PixelNumbers& pixel, uint32_t i) const {
+    const uint32_t index = pixel.first + i * pixel.stride;
+    return {table_->point(index), pixel.shifts.data(), pixel.key, index};
+  }
+  // The bits of all kPerVertex numbers of a vertex.
+  void vertexBits(const Sample& sample, int depth, uint32_t* out) const {
+    const int base = blockOf(depth);
+    const bool isTabulated = base + dimension::kPerVertex <= dimensions_;
+    for (int d = 0; d < dimension::kPerVertex; ++d)
+      out[d] =
+          isTabulated ? sample.point[base + d] ^ sample.shifts[base + d] : bitsOf(sample, base + d);
+  }
+  static uint32_t vertexKey(const Sample& sample, int depth) {
+    return keyOf(sample, blockOf(depth));
   }
 
  private:
+  static int blockOf(int depth) { return dimension::kVertex + depth * dimension::kPerVertex; }
+  uint32_t bitsOf(const Sample& sample, int d) const {
+    if (d < dimensions_) return sample.point[d] ^ sample.shifts[d];
+    return uint32_t(hash(sample.key, sample.index, uint64_t(d)));  // deep: not stratified
+  }
+  static uint32_t keyOf(const Sample& sample, int base) {
+    return uint32_t(sample.key) ^ (sample.index * 0x9e3779b9u + uint32_t(base) * 0x85ebca6bu);
+  }
+
   const SobolTable* table_;
   int dimensions_;
   uint64_t seed_;
   PixelNumbers own_;
-  uint64_t key_ = 0;                  // of the pixel
-  const uint32_t* shifts_ = nullptr;  // of the pixel
-  const uint32_t* point_ = nullptr;
-  uint32_t index_ = 0;  // in the block
+  Sample sample_;
   int base_ = 0;
 };
 

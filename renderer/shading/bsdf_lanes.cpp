@@ -211,6 +211,11 @@ PlainBsdfLanes::PlainBsdfLanes(const MaterialLanes& m, const Vector& normal,
     metallicRoughness_.emplace(m, normal, geometricNormal, wo, *table);
 }
 
+Vector PlainBsdfLanes::normal() const {
+  if (!metallicRoughness_) return lambert_.normal();
+  return chosen(isLambertian_, lambert_.normal(), metallicRoughness_->normal());
+}
+
 BsdfLanesValue PlainBsdfLanes::evaluate(const Vector& wi) const {
   if (!metallicRoughness_) return lambert_.evaluate(wi);
   const BsdfLanesValue other = metallicRoughness_->evaluate(wi);

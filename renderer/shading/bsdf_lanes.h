@@ -47,6 +47,7 @@ class LambertLanes {
 
   BsdfLanesValue evaluate(const Lanes3<Float8>& wi) const;
   BsdfLanesSample sample(Float8 u, Float8 v) const;
+  const Lanes3<Float8>& normal() const { return frame_.z; }
 
  private:
   Lanes3<Float8> albedo_, geometricNormal_;
@@ -70,6 +71,7 @@ class MetallicRoughnessLanes {
 
   BsdfLanesValue evaluate(const Lanes3<Float8>& wi) const;
   BsdfLanesSample sample(Float8 u, Float8 v, Float8 lobe) const;
+  const Lanes3<Float8>& normal() const { return frame_.z; }
 
  private:
   struct Albedo {  // SpecularAlbedo
@@ -116,6 +118,7 @@ class PlainBsdfLanes {
 
   BsdfLanesValue evaluate(const Lanes3<Float8>& wi) const;
   BsdfLanesSample sample(Float8 u, Float8 v, Float8 lobe) const;
+  Lanes3<Float8> normal() const;
 
  private:
   Int8 isLambertian_;

@@ -39,16 +39,14 @@ void findMovingHits(const Accel& accel, std::span<CameraSample> cameras,
 }  // namespace
 
 void findFirstHits(const World& world, std::span<CameraSample> cameras, RayMask visible,
-                   PixelSampler& sampler) {
+                   const PixelSampler& sampler) {
   std::array<uint32_t, kMostInArrays> keys;
   const auto find = world.scene.moves ? findMovingHits : findHits;
   for (size_t first = 0; first < cameras.size(); first += kMostInArrays) {
     const auto some = cameras.subspan(first, std::min(kMostInArrays, cameras.size() - first));
-    for (size_t i = 0; i < some.size(); ++i) {
-      some[i].start(sampler);
-      sampler.startVertex(0);  // the key that other surfaces at the place of the hit are met with
-      keys[i] = sampler.sampleKey();
-    }
+    // Other surfaces at the place of a hit are met with the keys of the vertex.
+    for (size_t i = 0; i < some.size(); ++i)
+      keys[i] = PixelSampler::vertexKey(sampler.sampleAt(*some[i].pixel, some[i].index), 0);
     find(world.accel, some, std::span(keys).first(some.size()), visible);
   }
 }

@@ -34,7 +34,7 @@ struct CameraSample {
 
 // Finds the closest hits of the cameras' rays.
 void findFirstHits(const World& world, std::span<CameraSample> cameras, RayMask visible,
-                   PixelSampler& sampler);
+                   const PixelSampler& sampler);
 
 // A sample of a pixel. A defect excludes it from the mean.
 struct Sample {

@@ -2,6 +2,7 @@
 #include "transport/wide_paths.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "transport/first_surface.h"
 
@@ -54,15 +55,22 @@ bool WidePaths::serves(const PathTracer& tracer, const PathContext& context) {
          tracer.mirrorAlpha() == 0 && tracer.lighting().sampleMany({}, {}) && s.maxDepth > 0 &&
          s.maxTransmissionDepth > 0 && !s.limitsKinds() && s.compared == s.visible &&
          (!s.guide || s.guide->empty()) && (!s.caustics || s.caustics->empty()) &&
-         !context.groups && !context.records && !context.log;
+         !context.groups && !context.log;
 }
 
-void WidePaths::Paths::copy(size_t from, size_t to) {
-  if (from == to) return;
-  const auto move = [&](auto&... arrays) { ((arrays[to] = arrays[from]), ...); };
-  const auto move3 = [&](LaneArrays3& v) { move(v.x, v.y, v.z); };
-  move3(rays.origin), move3(rays.direction), move3(throughput);
-  move(pdf, length, id, scattered, hits.instance, hits.triangle, hits.u, hits.v, hits.distance);
+void WidePaths::Paths::copy(const Paths& from, size_t i, size_t to) {
+  if (this == &from && i == to) return;
+  const auto copy3 = [&](LaneArrays3& v, const LaneArrays3& other) {
+    v.x[to] = other.x[i], v.y[to] = other.y[i], v.z[to] = other.z[i];
+  };
+  copy3(rays.origin, from.rays.origin), copy3(rays.direction, from.rays.direction);
+  copy3(throughput, from.throughput), copy3(throughputBefore, from.throughputBefore);
+  copy3(position, from.position), copy3(normal, from.normal);
+  pdf[to] = from.pdf[i], length[to] = from.length[i];
+  id[to] = from.id[i], scattered[to] = from.scattered[i];
+  hits.instance[to] = from.hits.instance[i], hits.triangle[to] = from.hits.triangle[i];
+  hits.u[to] = from.hits.u[i], hits.v[to] = from.hits.v[i];
+  hits.distance[to] = from.hits.distance[i];
 }
 
 void WidePaths::start(const Task& task) {
@@ -72,6 +80,7 @@ void WidePaths::start(const Task& task) {
   for (size_t i = 0; i < paths_->size; ++i) {
     const CameraSample& camera = task.cameras[i];
     task.radiances[i] = Rgb(0);
+    samples_[i] = task.context.sampler.sampleAt(*camera.pixel, camera.index);
     paths_->id[i] = int32_t(i);
     paths_->rays.origin.set(i, camera.ray.origin);
     paths_->rays.direction.set(i, camera.ray.direction);
@@ -108,24 +117,20 @@ void WidePaths::follow(std::span<const CameraSample> cameras, const PathTracer& 
   }
 }
 
-void WidePaths::setKeys(const Task& task) {
-  PixelSampler& sampler = task.context.sampler;
-  for (size_t k = 0; k < paths_->size; ++k) {
-    task.cameras[size_t(paths_->id[k])].start(sampler);
-    sampler.startVertex(depth_);
-    keys_[k] = sampler.sampleKey();
-  }
+void WidePaths::setKeys() {
+  for (size_t k = 0; k < paths_->size; ++k)
+    keys_[k] = PixelSampler::vertexKey(samples_[size_t(paths_->id[k])], depth_);
 }
 
 void WidePaths::traceRays(const Task& task) {
-  setKeys(task);
+  setKeys();
   task.world().accel.intersect(paths_->rays, paths_->size, std::span(keys_).first(paths_->size),
                                Accel::Coherence::None, paths_->hits, task.settings().visible);
 }
 
 // As PathTracer::endsAtAnyHit().
 void WidePaths::traceLastRays(const Task& task) {
-  setKeys(task);
+  setKeys();
   const Accel& accel = task.world().accel;
   const RayMask visible = task.settings().visible;
   accel.transmittance(paths_->rays, std::span(transmittances_).first(paths_->size), visible);
@@ -139,7 +144,7 @@ void WidePaths::traceLastRays(const Task& task) {
       const Ray ray{paths_->rays.origin.at(k), paths_->rays.direction.at(k)};
       if (accel.intersect(ray, keys_[k], hit, visible)) paths_->hits.set(k, hit);
     }
-    paths_->copy(k, kept++);
+    paths_->copy(*paths_, k, kept++);
   }
   paths_->size = kept;
 }
@@ -150,7 +155,7 @@ bool WidePaths::isFollowed(const Task& task, size_t path) const {
 }
 
 void WidePaths::endAtLimit(const Task& task) {
-  setKeys(task);
+  setKeys();
   for (size_t k = 0; k < paths_->size; ++k)
     if (kindOf(task, k) == PlainSurfaces::Kind::Other || isFollowed(task, k)) handOver(task, k);
 }
@@ -171,7 +176,7 @@ void WidePaths::leaveLanes(const Task& task) {
         task.cameras[size_t(paths_->id[k])].widening > 0)
       handOver(task, k);
     else
-      paths_->copy(k, kept++);
+      paths_->copy(*paths_, k, kept++);
   paths_->size = kept;
 }
 
@@ -182,7 +187,8 @@ void WidePaths::handOver(const Task& task, size_t k) {
   state.ray.origin = paths_->rays.origin.at(k), state.ray.direction = paths_->rays.direction.at(k);
   state.radiance = task.radiances[id];
   state.throughput = paths_->throughput.at(k);
-  state.from = {state.ray.origin, state.ray.direction, nullptr, depth_ - 1};
+  state.from = {paths_->position.at(k), paths_->normal.at(k), nullptr, depth_ - 1};
+  state.throughputBefore = paths_->throughputBefore.at(k);
   state.pdf = paths_->pdf[k];
   state.isDelta = state.pdf == 0;
   state.lobes = state.isDelta ? Lobes::Narrow : Lobes::Broad;
@@ -194,41 +200,54 @@ void WidePaths::handOver(const Task& task, size_t k) {
 }
 
 void WidePaths::endEscaped(const Task& task) {
-  struct Escaped {
-    RayArrays rays;
-    LaneArrays3 throughput;
-    alignas(64) LaneArray<float> pdf;
-    std::array<uint32_t, kMaxPaths> id;
-    LightArrays found;
-  };
-  thread_local Escaped escaped;
-  size_t kept = 0, count = 0;
+  size_t kept = 0;
+  escaped_.size = 0;
   for (size_t k = 0; k < paths_->size; ++k)
-    if (paths_->hits.instance[k] != HitArrays::kNone) {
-      paths_->copy(k, kept++);
-    } else if (notesMirrored(task, k)) {
+    if (paths_->hits.instance[k] != HitArrays::kNone)
+      paths_->copy(*paths_, k, kept++);
+    else if (notesMirrored(task, k))
       handOver(task, k);
-    } else {
-      escaped.rays.origin.set(count, paths_->rays.origin.at(k));
-      escaped.rays.direction.set(count, paths_->rays.direction.at(k));
-      escaped.throughput.set(count, paths_->throughput.at(k));
-      escaped.pdf[count] = paths_->pdf[k];
-      escaped.id[count++] = uint32_t(paths_->id[k]);
-    }
+    else
+      escaped_.copy(*paths_, k, escaped_.size++);
   paths_->size = kept;
-  if (count == 0 || (depth_ == 0 && task.settings().hideProbe)) return;
-  if (depth_ == 0)
-    task.lighting().backgroundArrays(escaped.rays, count, escaped.found);
+  const bool isSeen = depth_ == 0;
+  if (escaped_.size == 0 || (isSeen && task.settings().hideProbe)) return;
+  if (isSeen)
+    task.lighting().backgroundArrays(escaped_.rays, escaped_.size, lights_);
   else
-    task.lighting().escapedArrays(escaped.rays, count, escaped.found);
-  for (size_t i = 0; i < count; i += kWidth) {
-    const Float8 pdf = loadLanes(&escaped.pdf[i]);
-    const Vector light = escaped.throughput.load(i) * escaped.found.light.load(i);
-    const Float8 weight =
-        weightOfBsdfSample(task.settings().mis, pdf, loadLanes(&escaped.found.pdf[i]));
-    escaped.found.light.store(i, chosen(pdf == 0, light, weight * light));
+    task.lighting().escapedArrays(escaped_.rays, escaped_.size, lights_);
+  addEscaped(task);
+}
+
+// As PathTracer::addBackground() and addEscaped(). All of the probe's light is found by cameras and
+// smooth mirrors.
+void WidePaths::addEscaped(const Task& task) {
+  LaneArrays3 found, weighted;
+  for (size_t i = 0; i < escaped_.size; i += kWidth) {
+    const Float8 pdf = loadLanes(&escaped_.pdf[i]);
+    const Vector light = escaped_.throughput.load(i) * lights_.light.load(i);
+    const Float8 weight = weightOfBsdfSample(task.settings().mis, pdf, loadLanes(&lights_.pdf[i]));
+    found.store(i, light);
+    weighted.store(i, chosen(pdf == 0, light, weight * light));
   }
-  for (size_t k = 0; k < count; ++k) task.radiances[escaped.id[k]] += escaped.found.light.at(k);
+  for (size_t k = 0; k < escaped_.size; ++k) {
+    task.radiances[size_t(escaped_.id[k])] += weighted.at(k);
+    if (task.context.records && escaped_.pdf[k] != 0)
+      task.context.addRecord(recordOf(k, found.at(k), lights_.pdf[k]));
+  }
+}
+
+// As in PathTracer::weighted().
+LightRecord WidePaths::recordOf(size_t k, const Rgb& found, float lightPdf) const {
+  const float pdf = escaped_.pdf[k];
+  const float integrand = luminance(found) / luminance(escaped_.throughputBefore.at(k)) * pdf;
+  return {escaped_.position.at(k),
+          escaped_.normal.at(k),
+          escaped_.rays.direction.at(k),
+          integrand,
+          lightPdf + pdf,
+          lightPdf,
+          pdf};
 }
 
 void WidePaths::fillVertices(const Task& task) {
@@ -266,15 +285,14 @@ void WidePaths::drawNumbers(const Task& task) {
   constexpr size_t kNumbers = dimension::kPerVertex;
   static_assert(kNumbers == kWidth);
   alignas(64) std::array<std::array<float, kNumbers>, kWidth> rows;  // bits
-  PixelSampler& sampler = task.context.sampler;
+  const PixelSampler& sampler = task.context.sampler;
   for (size_t i = 0; i < paths_->size; i += kWidth) {
     std::array<const float*, kWidth> begins;
     for (size_t k = 0; k < kWidth; ++k) {
       begins[k] = rows[k].data();
       if (i + k >= paths_->size) continue;
-      task.cameras[size_t(paths_->id[i + k])].start(sampler);
-      sampler.startVertex(depth_);
-      sampler.vertexBits(reinterpret_cast<uint32_t*>(rows[k].data()));
+      sampler.vertexBits(samples_[size_t(paths_->id[i + k])], depth_,
+                         reinterpret_cast<uint32_t*>(rows[k].data()));
     }
     const auto columns = L::columns(begins);
     for (size_t d = 0; d < kNumbers; ++d)
@@ -284,6 +302,7 @@ void WidePaths::drawNumbers(const Task& task) {
 
 void WidePaths::scatter(const Task& task) {
   shadows_.size = next_->size = 0;
+  shadows_.records.clear();
   for (size_t i = 0; i < paths_->size; i += kWidth) scatterLanes(task, i);
   task.context.counts.bounce += next_->size;
 }
@@ -308,6 +327,7 @@ void WidePaths::scatterLanes(const Task& task, size_t i) {
   shadows_.radiance.store(s, throughput * (weight * value.fCos) * lights_.light.load(i), lit);
   lit.store(&shadows_.id[s], loadLanes(&paths_->id[i]));
   shadows_.size += lit.count();
+  if (task.context.records) recordSamples(i, lit.bits(), value, bsdf.normal());
 
   const BsdfLanesSample bounce = bsdf.sample(unitsOf(numbers_[dimension::kBsdf], i),
                                              unitsOf(numbers_[dimension::kBsdf + 1], i),
@@ -329,16 +349,38 @@ void WidePaths::scatterLanes(const Task& task, size_t i) {
   on.store(&next_->length[n], loadLanes(&paths_->length[i]));
   on.store(&next_->id[n], loadLanes(&paths_->id[i]));
   on.store(&next_->scattered[n], loadLanes(&paths_->scattered[i]) | (bounce.pdf != 0));
+  next_->position.store(n, vertices_.position.load(i), on);
+  next_->normal.store(n, bsdf.normal(), on);
+  next_->throughputBefore.store(n, throughput, on);
   next_->size += on.count();
+}
+
+// As DirectLight::record().
+void WidePaths::recordSamples(size_t first, unsigned lit, const BsdfLanesValue& value,
+                              const Vector& normal) {
+  for (; lit != 0; lit &= lit - 1) {
+    const size_t k = size_t(std::countr_zero(lit)), i = first + k;
+    const Rgb fCos(value.fCos.x[k], value.fCos.y[k], value.fCos.z[k]);
+    const float pdf = lights_.pdf[i];
+    shadows_.records.push_back({.position = vertices_.position.at(i),
+                                .normal = {normal.x[k], normal.y[k], normal.z[k]},
+                                .direction = lights_.direction.at(i),
+                                .integrand = luminance(fCos * lights_.light.at(i)) * pdf,
+                                .density = pdf + value.pdf[k],
+                                .strategyPdf = pdf,
+                                .bsdfPdf = value.pdf[k]});
+  }
 }
 
 void WidePaths::traceShadowRays(const Task& task) {
   task.context.counts.shadow += shadows_.size;
   task.world().accel.transmittance(shadows_.rays, std::span(transmittances_).first(shadows_.size),
                                    task.settings().visible);
-  for (size_t k = 0; k < shadows_.size; ++k)
-    if (!chromeball::isBlack(transmittances_[k]))
-      task.radiances[size_t(shadows_.id[k])] += shadows_.radiance.at(k) * transmittances_[k];
+  for (size_t k = 0; k < shadows_.size; ++k) {
+    if (chromeball::isBlack(transmittances_[k])) continue;
+    task.radiances[size_t(shadows_.id[k])] += shadows_.radiance.at(k) * transmittances_[k];
+    if (task.context.records) task.context.addRecord(shadows_.records[k], transmittances_[k]);
+  }
 }
 
 }  // namespace chromeball

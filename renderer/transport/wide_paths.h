@@ -42,9 +42,12 @@ class WidePaths {
     alignas(64) LaneArray<int32_t> id;         // of the camera
     alignas(64) LaneArray<int32_t> scattered;  // -1 or 0, as in PathState
     HitArrays hits;
+    // For records of guides: the vertex at the ray's origin.
+    LaneArrays3 position, normal, throughputBefore;
     size_t size = 0;
 
-    void copy(size_t from, size_t to);
+    // Copies path `i` of `from` to place `to`.
+    void copy(const Paths& from, size_t i, size_t to);
   };
   struct Task;
 
@@ -52,6 +55,7 @@ class WidePaths {
   void traceRays(const Task& task);
   void traceLastRays(const Task& task);
   void endEscaped(const Task& task);
+  void addEscaped(const Task& task);
   void endAtLimit(const Task& task);
   void leaveLanes(const Task& task);
   bool isFollowed(const Task& task, size_t path) const;
@@ -63,13 +67,18 @@ class WidePaths {
   void drawNumbers(const Task& task);
   void scatter(const Task& task);
   void scatterLanes(const Task& task, size_t first);
+  void recordSamples(size_t first, unsigned lit, const BsdfLanesValue& value,
+                     const Lanes3<Float8>& normal);
+  LightRecord recordOf(size_t escaped, const Rgb& found, float lightPdf) const;
   void traceShadowRays(const Task& task);
-  void setKeys(const Task& task);
+  void setKeys();
 
   int depth_ = 0;
+  std::array<PixelSampler::Sample, kMaxPaths> samples_;  // by id
   std::array<Paths, 2> buffers_;
   Paths* paths_ = &buffers_[0];  // at this depth, and those that go on
   Paths* next_ = &buffers_[1];
+  Paths escaped_;
   VertexArrays vertices_;
   // By dimension: the bits of the random numbers of the vertices.
   alignas(64) std::array<LaneArray<uint32_t>, dimension::kPerVertex> numbers_;
@@ -80,6 +89,7 @@ class WidePaths {
     LaneArrays3 radiance;  // at the camera, if nothing is in the way
     alignas(64) LaneArray<int32_t> id;
     size_t size = 0;
+    std::vector<LightRecord> records;  // if they are wanted
   } shadows_;
 
   std::array<Rgb, kMaxPaths> transmittances_;
