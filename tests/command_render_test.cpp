@@ -384,6 +384,10 @@ TEST(CommandRender, GuidesOnlyRendersWithImportance) {
   scene.render({"--probe", scene.gradient, "--size", "16x12", "--samples", "8", "--strategy",
                 "suns", "-o", scene.out / "a.exr", "--stats", scene.out / "a.json"});
   EXPECT_FALSE(scene.stats("a.json")["guided"].get<bool>());
+  // Few pixels teach no guide: that is said.
+  const CommandResult idle = runCommand(arguments({"--guide", "on"}));
+  EXPECT_EQ(idle.status, 0);
+  EXPECT_NE(idle.error.find("--guide: nothing was guided"), std::string::npos) << idle.error;
 }
 
 TEST(SlowCommandRender, StopsAtTheTimeOrTheNoise) {

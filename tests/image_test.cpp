@@ -172,7 +172,9 @@ TEST(Image, DamagedHdrIsRejected) {
   expectError(head + "-Y 1 +X 8\n" + std::string("\2\2\0\x8\xff\1------", 12), "a run exceeds");
   expectError(head + "-Y 1 +X 4\n" + std::string("\1\1\1\4", 4), "a run exceeds");
   expectError(head + "-Y 1 +X 4\n" + std::string("\1\1\2\4", 4), "ends");
-  expectError("#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 1\n1234", "EXPOSURE");
+  for (const char* exposure : {"0", "1,5", "1/2", "2x", "2 3", "abc"})
+    expectError(std::string("#?RADIANCE\nEXPOSURE=") + exposure + "\n\n-Y 1 +X 1\n1234",
+                "EXPOSURE");
   expectError("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234", "rgbe");
   expectError("#?RADIANCE", "end");
 }

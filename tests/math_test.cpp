@@ -118,6 +118,33 @@ TEST(CdfRows, samplesColumnsInProportionAndRemapsU) {
   for (int c = 0; c < 7; ++c) EXPECT_NEAR(counts[c], weights[c] / 8 * kSamples, 1.01);
 }
 
+// Also with columns of less than a fraction's width, and at the ends of all columns.
+TEST(CdfRows, fractionsFindTheSameColumns) {
+  for (const double most : {1.0, 1e3, 1e12}) {
+    std::vector<double> weights(3000);
+    for (size_t i = 0; i < weights.size(); ++i)
+      weights[i] = i < 10 || i % 7 == 0 ? 0 : 1 + double(hash(i) % 100);
+    weights[2000] = most;
+    CdfRows exact(1, 3000);
+    FractionCdfRows rows(2, 3000);
+    EXPECT_EQ(rows.setRow(1, weights), exact.setRow(0, weights));
+    const auto expectSame = [&](uint32_t u) {
+      double rest = u * 0x1p-32;
+      float within;
+      ASSERT_EQ(rows.sample(1, u, within), exact.sample(0, rest)) << u;
+      ASSERT_GE(within, 0);
+      ASSERT_LE(within, 1);
+      if (most < 1e12) {
+        ASSERT_NEAR(within, rest, 2e-5);
+      }
+    };
+    for (uint64_t i = 0; i < 100'000; ++i) expectSame(uint32_t(hash(i)));
+    for (const double end : exact.row(0))
+      for (const double step : {-1.0, 0.0, 1.0})
+        expectSame(uint32_t(std::clamp(end * 0x1p32 + step, 0.0, 0x1p32 - 1)));
+  }
+}
+
 TEST(CdfRows, aWeightOf1e12PreservesTheOtherWidths) {
   std::vector<double> weights(16384, 1.0);
   weights[5000] = 1e12;

@@ -85,11 +85,20 @@ TEST(Verdict, HasOneLineForTheBiased) {
   EXPECT_EQ(verdictOf({better, worse})[1], "All of them are biased.");
 }
 
-// An error that is below the noise of the reference is unknown: neither better, nor equal.
-TEST(Verdict, LeavesOutWhatIsUnknown) {
+// An error below the noise of the reference, which was subtracted, is about as small as that noise.
+TEST(Verdict, KnowsThatAnErrorBelowTheReferencesNoiseIsSmall) {
+  for (const double mean : {-0.001, 0.0, 0.0003}) {
+    const auto found =
+        verdictOf({strategy("bsdf", {56, 40}, 1), strategy("importance", {mean, 0.0009}, 1),
+                   strategy("median-cut:8", {0.4, 0.01}, 1, false)});
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_TRUE(found[0].starts_with("Use importance: at equal time bsdf, the next best, has 6"))
+        << found[0];
+    EXPECT_EQ(found[1], "Of 1 biased, none is significantly better at equal time.");
+  }
   const auto found =
       verdictOf({strategy("a", {0.01, 0.0001}, 1), strategy("b", {-0.001, 0.01}, 1)});
-  EXPECT_EQ(found, std::vector<std::string>{"Use a."});
+  EXPECT_TRUE(found[0].starts_with("Use a or b: no significant difference")) << found[0];
 }
 
 // Times with lognormal scatter, and four repeats: Student's quantile is needed.

@@ -119,3 +119,15 @@ def test_files():
 def test_wrong_arguments_are_refused(call):
     with pytest.raises(cb.InputError):
         call(cb.Probe(sky()))
+
+
+def test_jpeg_tiff_with_unassociated_alpha_is_refused(tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    texels = np.zeros((32, 64, 4), np.uint8)
+    texels[..., :3], texels[..., 3] = (200, 150, 100), 128
+    image.fromarray(texels).save(tmp_path / "jpeg.tif", compression="jpeg")
+    image.fromarray(texels).save(tmp_path / "lzw.tif", compression="tiff_lzw")
+    with pytest.raises(cb.InputError, match="alpha is unassociated and its compression JPEG"):
+        cb.Probe(tmp_path / "jpeg.tif")
+    red = ((200 / 255 + 0.055) / 1.055) ** 2.4 * 128 / 255
+    assert cb.Probe(tmp_path / "lzw.tif").radiance(AXES)[:, 0] == pytest.approx(red, rel=1e-3)

@@ -87,19 +87,20 @@ double Importance::tabulate() {
   return std::accumulate(rowWeights.begin(), rowWeights.end(), 0.0);
 }
 
-DirectionSample Importance::sampleDirection(double u, double v) const {
+DirectionSample Importance::sampleDirection(uint32_t u, uint32_t v) const {
   if (!(total_ > 0)) return {vec3(0, 1, 0), Rgb(0), 0};
-  const int row = rows_.sample(0, v);
-  const int column = columns_.sample(row, u);
-  const LuminanceField::Point point = field_.sample(column, row, float(u), float(v));
+  float inColumn, inRow;
+  const int row = rows_.sample(0, v, inRow);
+  const int column = columns_.sample(row, u, inColumn);
+  const LuminanceField::Point point = field_.sample(column, row, inColumn, inRow);
   const float pdf = point.weight * scale_;
   return {point.direction, point.radiance / pdf, pdf};
 }
 
 void Importance::sample(const LightPoint&, const PixelSampler& sampler,
                         std::vector<DirectionSample>& out) const {
-  const DirectionSample sample = sampleDirection(sampler.bits(dimension::kLight) * 0x1p-32,
-                                                 sampler.bits(dimension::kLight + 1) * 0x1p-32);
+  const DirectionSample sample =
+      sampleDirection(sampler.bits(dimension::kLight), sampler.bits(dimension::kLight + 1));
   if (sample.pdf > 0) out.push_back(sample);
 }
 
@@ -120,23 +121,20 @@ bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
 }
 
 // Each loop prefetches what the next one reads.
-void Importance::sampleArrays(std::span<const uint32_t> u32, const uint32_t* v32,
+void Importance::sampleArrays(std::span<const uint32_t> us, const uint32_t* vs,
                               LightArrays& out) const {
-  const size_t count = u32.size();
+  const size_t count = us.size();
   assert(count <= kMostInArrays);
   if (!(total_ > 0)) return out.pdf.fill(0);
-  alignas(64) LaneArray<double> us, vs;
   alignas(64) LaneArray<int32_t> columns, rows;
-  for (size_t i = 0; i < count; ++i) {
-    us[i] = u32[i] * 0x1p-32, vs[i] = v32[i] * 0x1p-32;
-    rows[i] = rows_.sample(0, vs[i]);
-    columns_.prefetchGuide(rows[i], us[i]);
-  }
-  for (size_t i = 0; i < count; ++i) columns_.prefetchCdf(rows[i], us[i]);
   alignas(64) LaneArray<float> u, v;
   for (size_t i = 0; i < count; ++i) {
-    columns[i] = columns_.sample(rows[i], us[i]);
-    u[i] = float(us[i]), v[i] = float(vs[i]);
+    rows[i] = rows_.sample(0, vs[i], v[i]);
+    columns_.prefetchGuide(rows[i], us[i]);
+  }
+  for (size_t i = 0; i < count; ++i) columns_.prefetchEnds(rows[i], us[i]);
+  for (size_t i = 0; i < count; ++i) {
+    columns[i] = columns_.sample(rows[i], us[i], u[i]);
     probe_.prefetch(columns[i], rows[i]);
   }
   for (size_t i = count; i % kWidth != 0; ++i) columns[i] = rows[i] = 0, u[i] = v[i] = 0;

@@ -34,21 +34,17 @@ class Importance : public ProbeLight {
   void escapedArrays(const RayArrays& rays, size_t count, LightArrays& out) const override;
   void backgroundArrays(const RayArrays& rays, size_t count, LightArrays& out) const override;
 
-  // The sample from two numbers in [0, 1), and its pdf over solid angle; 0 for a black probe.
-  DirectionSample sampleDirection(double u, double v) const;
+  // The sample from two 32-bit fractions, and its pdf over solid angle; 0 for a black probe.
+  DirectionSample sampleDirection(uint32_t u, uint32_t v) const;
   float pdf(const vec3& wi) const;
 
   const LuminanceField& field() const { return field_; }
-
-  // The tables: rows() samples the rows of cells by `v`, columns() the cells of each row by `u`.
-  const CdfRows& rows() const { return rows_; }
-  const CdfRows& columns() const { return columns_; }
 
  private:
   double tabulate();
 
   LuminanceField field_;
-  CdfRows rows_, columns_;
+  FractionCdfRows rows_, columns_;  // of cells by v, and the cells of each row by u
   double total_;
   float scale_;  // factor from the field's weight to the pdf over solid angle
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/cdf.h"
 
+#include <cmath>
+
 #include "base/memory.h"
 
 namespace chromeball {
@@ -36,6 +38,22 @@ double CdfRows::setRow(int row, std::span<const double> weights) {
     guide[k] = column;
   }
   guide[guideSize_] = last;
+  return total;
+}
+
+FractionCdfRows::FractionCdfRows(int rows, int columns)
+    : columns_(columns),
+      ends_(longArray<uint32_t>(size_t(rows) * size_t(columns))),
+      guide_(longArray<int32_t>(size_t(rows) * (kGuide + 1))) {}
+
+double FractionCdfRows::setRow(int row, std::span<const double> weights) {
+  CdfRows exact(1, columns_, int(kGuide));
+  const double total = exact.setRow(0, weights);
+  const std::span<const double> cdf = exact.row(0);
+  uint32_t* const ends = &ends_[size_t(row) * size_t(columns_)];
+  for (int i = 0; i < columns_; ++i)
+    ends[i] = uint32_t(std::max(std::ceil(cdf[size_t(i) + 1] * 0x1p32) - 1, 0.0));
+  std::ranges::copy(exact.guide(0), &guide_[size_t(row) * (kGuide + 1)]);
   return total;
 }
 

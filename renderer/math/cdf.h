@@ -29,10 +29,10 @@ class CdfRows {
     return std::span(cdf_).subspan(size_t(row) * (columns_ + 1), size_t(columns_) + 1);
   }
 
-  // These fetch into the cache what sample() reads: first its range of columns, then the cdf there.
-  void prefetchGuide(int row, double u) const { __builtin_prefetch(guide(row, u)); }
-  void prefetchCdf(int row, double u) const {
-    __builtin_prefetch(&cdf_[size_t(row) * (columns_ + 1) + *guide(row, u)]);
+  // For each of `guide` equal parts of [0, 1): the column that contains its beginning; and the last
+  // column that has weight.
+  std::span<const int32_t> guide(int row) const {
+    return std::span(guide_).subspan(size_t(row) * size_t(guideSize_ + 1), size_t(guideSize_) + 1);
   }
 
   // The column whose interval contains u, which is in [0, 1); `u` becomes the position inside that
@@ -57,6 +57,48 @@ class CdfRows {
   int columns_, guideSize_;
   std::vector<double> cdf_;     // rows x (columns + 1), each from 0 to 1
   std::vector<int32_t> guide_;  // rows x (guideSize_ + 1): the column that contains k / guideSize_
+};
+
+// The same for numbers that are 32-bit fractions, in half the memory: a column ends at the largest
+// fraction that CdfRows would find in it, so that both find the same columns.
+class FractionCdfRows {
+ public:
+  FractionCdfRows(int rows, int columns);
+
+  double setRow(int row, std::span<const double> weights);  // as CdfRows
+
+  // These fetch into the cache what sample() reads: first its range of columns, then their ends.
+  void prefetchGuide(int row, uint32_t u) const { __builtin_prefetch(guide(row, u)); }
+  void prefetchEnds(int row, uint32_t u) const {
+    __builtin_prefetch(&ends_[size_t(row) * size_t(columns_) + size_t(*guide(row, u))]);
+  }
+
+  // The column whose interval contains u; `within` is the position inside the interval, in [0, 1].
+  int sample(int row, uint32_t u, float& within) const {
+    const uint32_t* ends = &ends_[size_t(row) * size_t(columns_)];
+    const int32_t* range = guide(row, u);
+    int i = range[0];
+    for (int last = range[1]; last - i > 8;) {
+      const int middle = (i + last) / 2;
+      ends[middle - 1] < u ? i = middle : last = middle;
+    }
+    while (ends[i] < u) ++i;
+    const uint32_t begin = i > *guide(row, 0) ? ends[i - 1] + 1 : 0;
+    within = (float(u - begin) + 0.5f) / (float(ends[i] - begin) + 1);
+    return i;
+  }
+
+ private:
+  static constexpr int kGuideBits = 8;
+  static constexpr size_t kGuide = size_t(1) << kGuideBits;
+
+  const int32_t* guide(int row, uint32_t u) const {
+    return &guide_[size_t(row) * (kGuide + 1) + (u >> (32 - kGuideBits))];
+  }
+
+  int columns_;
+  std::vector<uint32_t> ends_;  // by row and column: the largest fraction of the column
+  std::vector<int32_t> guide_;  // rows x (kGuide + 1), as of CdfRows
 };
 
 // The number that `fraction` of the others, 0 to 1, are below: one of `values`, which are not

@@ -37,9 +37,7 @@ struct LanesOf<Float8> {
     return Float8((Int8(x) & INT32_MAX) | (Int8(sign) & INT32_MIN));
   }
   static Float8 gather(const float* p, Int8 index) {
-    Float8 result;
-    for (int k = 0; k < kCount; ++k) result[k] = p[index[k]];
-    return result;
+    return Float8(_mm256_i32gather_ps(p, __m256i(index), sizeof(float)));
   }
   // Column c in element c, of the rows of four numbers that begin at `rows`, one for each lane.
   static std::array<Float8, 4> columns4(const std::array<const float*, kCount>& rows) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "image/image.h"
@@ -189,14 +190,16 @@ Probe::CornersOf<F> Probe::cornersOf(const PositionOf<F>& p) const {
     const Corners c = corners(p.column, p.row);
     return {lanesOf(c.c00), lanesOf(c.c10), lanesOf(c.c01), lanesOf(c.c11)};
   } else {
-    // Two corners of three numbers each, and two numbers more.
-    const auto edge = [&](int rowsBelow) {
+    // Two corners of three numbers each, and two numbers more. The bits of an index are those of a
+    // number without sign.
+    const IntOf<F> index = p.row * (width_ + 1) + p.column;
+    const auto edge = [&](size_t offset) {
       std::array<const float*, LanesOf<F>::kCount> first;
       for (size_t k = 0; k < first.size(); ++k)
-        first[k] = &grid_[size_t(p.row[k] + rowsBelow) * (width_ + 1) + p.column[k]].x;
+        first[k] = &grid_[size_t(uint32_t(index[k])) + offset].x;
       return LanesOf<F>::columns(first);
     };
-    const auto top = edge(0), bottom = edge(1);
+    const auto top = edge(0), bottom = edge(size_t(width_) + 1);
     return {{top[0], top[1], top[2]},
             {top[3], top[4], top[5]},
             {bottom[0], bottom[1], bottom[2]},

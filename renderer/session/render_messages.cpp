@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "description/capabilities.h"
+#include "render/guide_training.h"
 
 namespace chromeball {
 namespace {
@@ -80,6 +81,19 @@ void addNoiseLimit(const RenderDescription& description, const FinishedRender& r
   messages.back().remedy = Remedy{byTime ? "render.time" : "render.samples", {}};
 }
 
+// `guide = "on"` where a guide could not be learned.
+void addGuide(const RenderDescription& description, const RenderResult& result,
+              Messages& messages) {
+  const RenderSettings& settings = description.settings;
+  if (settings.guiding == Guiding::On && GuideTraining::samplesOf(settings) > 0 &&
+      !settings.path().limitsKinds() && !result.interrupted && result.guidedRegions == 0 &&
+      result.causticFraction == 0)
+    addNote(messages,
+            "{}: nothing was guided: in the first {} samples per pixel too few rays found light to "
+            "learn from, or guiding would not reduce the noise",
+            namedOrigin(description, "render.guide"), GuideTraining::samplesOf(settings));
+}
+
 }  // namespace
 
 std::string limitInWords(DepthLimit limit, const RenderSettings& settings,
@@ -120,7 +134,10 @@ Messages resultMessages(const LoadedScene& loaded, const PreparedScene& prepared
   if (settings.clamp && result.render.clamped.count == 0)
     addNote(messages, "{}: no sample was above {:g}", namedOrigin(description, "clamp"),
             *settings.clamp);
-  if (!settings.isPart()) addNoiseLimit(description, result, messages);
+  if (!settings.isPart()) {
+    addNoiseLimit(description, result, messages);
+    addGuide(description, result.render, messages);
+  }
   if (description.composite || description.settings.isPart()) return messages;
   if (!result.render.interrupted)
     if (const auto why = whyBlack(loaded, prepared.world->accel, result.render, words))

@@ -256,7 +256,6 @@ std::string biasedLine(const StudyResults& results, const Cells& biased, const C
 std::vector<std::string> verdict(const Study& study, const StudyResults& results) {
   Cells unbiased, biased;
   for (const Cell* cell : ranking(study, results)) {
-    if (!(cell->error.relMse.mean > 0)) continue;  // less than the noise of the reference
     const auto row = std::ranges::find(results.strategies, cell->strategy, &StrategyResult::name);
     (row->unbiased ? unbiased : biased).push_back(cell);
   }

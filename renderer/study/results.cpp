@@ -60,6 +60,12 @@ Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<Store
   return cell;
 }
 
+// An error that is less than the noise of the reference, which was subtracted, may come out as 0 or
+// negative: it is then known to be about as small as its standard error.
+Estimate atLeastItsError(const Estimate& relMse) {
+  return {std::max(relMse.mean, relMse.standardError), relMse.standardError};
+}
+
 // The unbiased strategy that is the most efficient with the largest common budget; if there is
 // none, the most efficient one, or the first.
 std::string bestBaseline(const Study& study, const StudyResults& results) {
@@ -127,7 +133,8 @@ std::vector<std::string> warningsOf(const Study& study, const StudyResults& resu
   for (const StrategyResult& strategy : results.strategies)
     for (const Cell& cell : strategy.cells) {
       invalid += cell.invalidSamples;
-      const double fraction = cell.error.referenceVariance / cell.error.relMse.mean;
+      const double fraction =
+          cell.error.referenceVariance / atLeastItsError(cell.error.relMse).mean;
       if (fraction <= worst) continue;
       worst = fraction;
       where = fmt::format("{} at {}", strategy.name, cell.budget.label());
@@ -185,7 +192,7 @@ StudyResults studyResults(const Study& study, const RenderStore& store,
 
 RatioEstimate relativeEfficiency(const Cell& cell, const Cell& other) {
   if (&cell == &other) return {1, 0};
-  return ratio(other.error.relMse, cell.error.relMse) *
+  return ratio(atLeastItsError(other.error.relMse), atLeastItsError(cell.error.relMse)) *
          pairedRatio(other.repeatSeconds, cell.repeatSeconds);
 }
 

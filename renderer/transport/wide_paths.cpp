@@ -64,18 +64,22 @@ void WidePaths::Paths::copy(const Paths& from, size_t i, size_t to) {
     v.x[to] = other.x[i], v.y[to] = other.y[i], v.z[to] = other.z[i];
   };
   copy3(rays.origin, from.rays.origin), copy3(rays.direction, from.rays.direction);
-  copy3(throughput, from.throughput), copy3(throughputBefore, from.throughputBefore);
-  copy3(position, from.position), copy3(normal, from.normal);
+  copy3(throughput, from.throughput);
   pdf[to] = from.pdf[i], length[to] = from.length[i];
   id[to] = from.id[i], scattered[to] = from.scattered[i];
   hits.instance[to] = from.hits.instance[i], hits.triangle[to] = from.hits.triangle[i];
   hits.u[to] = from.hits.u[i], hits.v[to] = from.hits.v[i];
   hits.distance[to] = from.hits.distance[i];
+  if (!isRecorded) return;
+  copy3(throughputBefore, from.throughputBefore);
+  copy3(position, from.position), copy3(normal, from.normal);
 }
 
 void WidePaths::start(const Task& task) {
   depth_ = 0;
   left_.clear();
+  for (Paths* const paths : {paths_, next_, &escaped_})
+    paths->isRecorded = task.context.records != nullptr;
   paths_->size = task.cameras.size();
   for (size_t i = 0; i < paths_->size; ++i) {
     const CameraSample& camera = task.cameras[i];
@@ -187,8 +191,11 @@ void WidePaths::handOver(const Task& task, size_t k) {
   state.ray.origin = paths_->rays.origin.at(k), state.ray.direction = paths_->rays.direction.at(k);
   state.radiance = task.radiances[id];
   state.throughput = paths_->throughput.at(k);
-  state.from = {paths_->position.at(k), paths_->normal.at(k), nullptr, depth_ - 1};
-  state.throughputBefore = paths_->throughputBefore.at(k);
+  state.from = {state.ray.origin, state.ray.direction, nullptr, depth_ - 1};
+  if (paths_->isRecorded && depth_ > 0) {
+    state.from.position = paths_->position.at(k), state.from.normal = paths_->normal.at(k);
+    state.throughputBefore = paths_->throughputBefore.at(k);
+  }
   state.pdf = paths_->pdf[k];
   state.isDelta = state.pdf == 0;
   state.lobes = state.isDelta ? Lobes::Narrow : Lobes::Broad;
@@ -349,10 +356,11 @@ void WidePaths::scatterLanes(const Task& task, size_t i) {
   on.store(&next_->length[n], loadLanes(&paths_->length[i]));
   on.store(&next_->id[n], loadLanes(&paths_->id[i]));
   on.store(&next_->scattered[n], loadLanes(&paths_->scattered[i]) | (bounce.pdf != 0));
+  next_->size += on.count();
+  if (!next_->isRecorded) return;
   next_->position.store(n, vertices_.position.load(i), on);
   next_->normal.store(n, bsdf.normal(), on);
   next_->throughputBefore.store(n, throughput, on);
-  next_->size += on.count();
 }
 
 // As DirectLight::record().

@@ -42,7 +42,8 @@ class WidePaths {
     alignas(64) LaneArray<int32_t> id;         // of the camera
     alignas(64) LaneArray<int32_t> scattered;  // -1 or 0, as in PathState
     HitArrays hits;
-    // For records of guides: the vertex at the ray's origin.
+    // The vertex at the ray's origin, if it is recorded for guides.
+    bool isRecorded = false;
     LaneArrays3 position, normal, throughputBefore;
     size_t size = 0;
 

@@ -30,6 +30,11 @@ class OpenedImage : public ModuleImage {
                .unassociatedAlpha =
                    spec.alpha_channel >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha") != 0,
                .bytes = spec.image_bytes(true)};
+    // The library's decoder of JPEG multiplies by alpha, before sRGB is decoded.
+    if (header_.unassociatedAlpha && spec.get_string_attribute("compression") == "jpeg")
+      throw std::runtime_error(
+          "its alpha is unassociated and its compression JPEG, which is not supported; save it "
+          "with another compression");
   }
 
   const ModuleImageHeader& header() const override { return header_; }

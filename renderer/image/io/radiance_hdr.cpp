@@ -131,7 +131,7 @@ class Reader {
       if (text.find("32-bit_rle_rgbe") == std::string_view::npos)
         fail("unsupported FORMAT; it must be 32-bit_rle_rgbe");
     } else if (name == "EXPOSURE") {
-      exposure_ *= numbers.empty() ? 0 : numbers[0];
+      exposure_ *= numbers.size() == 1 ? numbers[0] : 0;
     } else if (name == "COLORCORR") {
       if (numbers.size() != 3) fail("COLORCORR must be three positive numbers");
       correction_ *= glm::dvec3(numbers[0], numbers[1], numbers[2]);
@@ -153,13 +153,17 @@ class Reader {
     }
   }
 
+  // None if there is anything else.
   static std::vector<double> numbersOf(std::string_view text) {
     const std::string copy(text);
     std::vector<double> numbers;
     char* end = nullptr;
     for (const char* at = copy.c_str();; at = end) {
       const double number = std::strtod(at, &end);
-      if (end == at) return numbers;
+      if (end == at)
+        return std::string_view(at).find_first_not_of(" \t\r") == std::string_view::npos
+                   ? numbers
+                   : std::vector<double>();
       numbers.push_back(number);
     }
   }
