@@ -11,8 +11,6 @@
 namespace chromeball::importance_test {
 namespace {
 
-uint32_t bits(int i, int dimension) { return uint32_t(random1(i, dimension) * 0x1p32); }
-
 TEST(Probe, interpolatesBetweenTexelCentres) {
   Image image(8, 4, 3);
   for (int y = 0; y < 4; ++y)
@@ -116,7 +114,8 @@ TEST(Importance, LanesAreTheSameAsSingleDirections) {
                                           std::span(samples).first(count)));
         importance.escapedMany(std::span(rays).first(count), std::span(found).first(count));
         for (size_t i = 0; i < count; ++i) {
-          const DirectionSample single = importance.sampleDirection(numbers[i].x, numbers[i].y);
+          const DirectionSample single =
+              importance.sampleDirection(numbers[i].x * 0x1p-32, numbers[i].y * 0x1p-32);
           ASSERT_LT(glm::distance(samples[i].wi, single.wi), kRounding);
           ASSERT_NEAR(samples[i].pdf, single.pdf, 1e-3f * single.pdf);
           ASSERT_NEAR(samples[i].irradiance.x, single.irradiance.x, 1e-3f * single.irradiance.x);
@@ -146,7 +145,8 @@ TEST(SlowImportance, samplesFollowThePdfOnEveryProbe) {
       const Importance importance(probe, compensated);
       const SphereTest test = testDirections(
           [&](int i) {
-            return std::optional(importance.sampleDirection(bits(i, 0), bits(i, 1)).wi);
+            return std::optional(
+                importance.sampleDirection(double(random1(i, 0)), double(random1(i, 1))).wi);
           },
           [&](const vec3& w) { return importance.pdf(w); }, 200000, 3, 16, 32);
       EXPECT_NEAR(test.totalProbability, 1, 5e-3);
@@ -160,7 +160,7 @@ TEST(Importance, pdfOfSamplesAgreesWithPdfOfDirectionsAndIsPositiveWhereThereIsL
     const Probe probe(c.image);
     const Importance importance(probe, false);
     for (int i = 0; i < 20000; ++i) {
-      const DirectionSample s = importance.sampleDirection(bits(i, 0), bits(i, 1));
+      const DirectionSample s = importance.sampleDirection(random1(i, 0), random1(i, 1));
       ASSERT_GT(s.pdf, 0);
       ASSERT_NEAR(importance.pdf(s.wi), s.pdf, 2e-3f * s.pdf + 1e-3f);
       const vec3 w = squareToUniformSphere(random2(i, 2));

@@ -234,5 +234,53 @@ TEST(Lanes, PathsLeaveAtOtherSurfaces) {
   EXPECT_TRUE(isServed);
 }
 
+// A smooth mirror under a sheet whose back it does not see, with and without a bounce behind it.
+TEST(Lanes, MirrorsSeeThroughHiddenBacks) {
+  const auto square = [](float height, float size) {
+    Mesh mesh;
+    mesh.positions = {
+        {-size, height, -size}, {-size, height, size}, {size, height, size}, {size, height, -size}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};  // the front is above
+    return mesh;
+  };
+  Scene scene;
+  scene.materials.resize(2);
+  scene.materials[0].roughness = 0;
+  scene.materials[1].specular = scene.materials[1].metallic = 0;
+  scene.meshes.push_back(square(0, 2));
+  scene.meshes.push_back(square(1, 1));
+  scene.instances = {{.mesh = 0, .material = 0}, {.mesh = 1, .material = 1}};
+  const World world(scene, {}, allTables());
+  const Probe probe(studioProbe({64, 32}));
+  for (const int depth : {1, 2, 4}) {
+    PathSettings settings;
+    settings.maxDepth = depth;
+    const auto lighting = makeStrategy("importance", probe, settings.mis, "test");
+    const PathTracer tracer(world, *lighting, settings);
+    const SobolTable table(64, dimension::tabulated(6), 0);
+    PathContext context{.sampler = PixelSampler(table, 0), .clamp = Clamp()};
+    ASSERT_TRUE(WidePaths::serves(tracer, context));
+    PixelNumbers pixel;
+    context.sampler.set(pixel, 0, 0, 0);
+    std::vector<CameraSample> cameras(64);
+    for (uint32_t i = 0; i < cameras.size(); ++i) {
+      cameras[i].pixel = &pixel, cameras[i].index = i;
+      const vec3 target(0.02f * float(i) - 0.64f, 0, 0);
+      const vec3 origin(0, 0.5f, 2);
+      cameras[i].ray = {origin, glm::normalize(target - origin)};
+    }
+    findFirstHits(world, cameras, kAllInstances, context.sampler);
+    const auto found = PathBatch::traced(cameras, tracer, context);
+    float brightest = 0;
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      cameras[i].start(context.sampler);
+      const Rgb single = tracer.radiance(cameras[i].path(), cameras[i].hit, context);
+      expectClose(found[i], single, 1e-3f + maxComponent(single));
+      brightest = std::max(brightest, maxComponent(single));
+    }
+    EXPECT_GT(brightest, 0) << "the sky behind the sheet";
+  }
+}
+
 }  // namespace
 }  // namespace chromeball::lanes_test

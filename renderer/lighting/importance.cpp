@@ -87,11 +87,11 @@ double Importance::tabulate() {
   return std::accumulate(rowWeights.begin(), rowWeights.end(), 0.0);
 }
 
-DirectionSample Importance::sampleDirection(uint32_t u, uint32_t v) const {
+DirectionSample Importance::sampleDirection(double u, double v) const {
   if (!(total_ > 0)) return {vec3(0, 1, 0), Rgb(0), 0};
   float inColumn, inRow;
-  const int row = rows_.sample(0, v, inRow);
-  const int column = columns_.sample(row, u, inColumn);
+  const int row = rows_.sample(0, uint32_t(v * 0x1p32), inRow);
+  const int column = columns_.sample(row, uint32_t(u * 0x1p32), inColumn);
   const LuminanceField::Point point = field_.sample(column, row, inColumn, inRow);
   const float pdf = point.weight * scale_;
   return {point.direction, point.radiance / pdf, pdf};
@@ -99,8 +99,8 @@ DirectionSample Importance::sampleDirection(uint32_t u, uint32_t v) const {
 
 void Importance::sample(const LightPoint&, const PixelSampler& sampler,
                         std::vector<DirectionSample>& out) const {
-  const DirectionSample sample =
-      sampleDirection(sampler.bits(dimension::kLight), sampler.bits(dimension::kLight + 1));
+  const DirectionSample sample = sampleDirection(sampler.bits(dimension::kLight) * 0x1p-32,
+                                                 sampler.bits(dimension::kLight + 1) * 0x1p-32);
   if (sample.pdf > 0) out.push_back(sample);
 }
 

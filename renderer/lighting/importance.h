@@ -34,8 +34,9 @@ class Importance : public ProbeLight {
   void escapedArrays(const RayArrays& rays, size_t count, LightArrays& out) const override;
   void backgroundArrays(const RayArrays& rays, size_t count, LightArrays& out) const override;
 
-  // The sample from two 32-bit fractions, and its pdf over solid angle; 0 for a black probe.
-  DirectionSample sampleDirection(uint32_t u, uint32_t v) const;
+  // The sample from two numbers in [0, 1), of which 32 bits count, and its pdf over solid angle; 0
+  // for a black probe.
+  DirectionSample sampleDirection(double u, double v) const;
   float pdf(const vec3& wi) const;
 
   const LuminanceField& field() const { return field_; }

@@ -47,7 +47,7 @@ void Suns::sample(const LightPoint& point, const PixelSampler& sampler,
     const Escaped light = escaped(point, wi);
     if (light.pdf > 0) out.push_back({wi, light.radiance / light.pdf, light.pdf});
   };
-  const DirectionSample rest = importance_.sampleDirection(u, v);
+  const DirectionSample rest = importance_.sampleDirection(u * 0x1p-32, v * 0x1p-32);
   if (rest.pdf > 0) add(rest.wi);
   discs_.sample(u, v, 0, add);
 }

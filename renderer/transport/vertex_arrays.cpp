@@ -64,6 +64,11 @@ void VertexArrays::gather(const PlainSurfaces& plain, const HitArrays& hits, siz
   }
 }
 
+// The lanes of the last vector that are beyond the vertices: nothing reads the tables of metals.
+void VertexArrays::clearTail(size_t count) {
+  for (size_t k = count; k % L::kCount != 0; ++k) set(k, MaterialPoint{});
+}
+
 void VertexArrays::addLanes(size_t i, const RayArrays& rays, const HitArrays& hits) {
   const Vector p0 = corners_[0].load(i), p1 = corners_[1].load(i), p2 = corners_[2].load(i);
   const Float8 u = loadLanes(&hits.u[i]), v = loadLanes(&hits.v[i]);
@@ -105,6 +110,7 @@ void VertexArrays::fill(const Scene& scene, const PlainSurfaces& plain, const Ra
                         const HitArrays& hits, std::span<const float> crossSections) {
   const size_t count = crossSections.size();
   gather(plain, hits, count);
+  clearTail(count);
   for (size_t i = 0; i < count; i += L::kCount) addLanes(i, rays, hits);
   for (size_t k = 0; k < count; ++k) {
     if (!isSingle_[k]) [[likely]]

@@ -38,6 +38,7 @@ class VertexArrays {
 
  private:
   void gather(const PlainSurfaces& plain, const HitArrays& hits, size_t count);
+  void clearTail(size_t count);
   void addLanes(size_t i, const RayArrays& rays, const HitArrays& hits);
   void set(size_t i, const Surface& surface);
   void set(size_t i, const MaterialPoint& material);

@@ -32,6 +32,12 @@ Float8 weightOfLightSample(Mis mis, Float8 lightPdf, Float8 bsdfPdf) {
   return mis == Mis::Off ? L::splat(1) : misWeight(mis, lightPdf, bsdfPdf);
 }
 
+// The least alpha behind a bounce (spreadOf()); 0 without regularisation or behind a mirror.
+Float8 widenedBy(Float8 widening, Float8 pdf) {
+  const Float8 spread = smaller(L::splat(1), 1 / L::squareRoot(kPi * pdf));
+  return pdf > 0 ? widening * spread : Float8{};
+}
+
 Int8 isBlack(const Vector& c) { return (c.x == 0) & (c.y == 0) & (c.z == 0); }
 
 }  // namespace
@@ -67,6 +73,7 @@ void WidePaths::Paths::copy(const Paths& from, size_t i, size_t to) {
   copy3(throughput, from.throughput);
   pdf[to] = from.pdf[i], length[to] = from.length[i];
   id[to] = from.id[i], scattered[to] = from.scattered[i];
+  widening[to] = from.widening[i], minAlpha[to] = from.minAlpha[i];
   hits.instance[to] = from.hits.instance[i], hits.triangle[to] = from.hits.triangle[i];
   hits.u[to] = from.hits.u[i], hits.v[to] = from.hits.v[i];
   hits.distance[to] = from.hits.distance[i];
@@ -91,6 +98,7 @@ void WidePaths::start(const Task& task) {
     paths_->throughput.set(i, Rgb(1));
     paths_->pdf[i] = paths_->length[i] = 0;
     paths_->scattered[i] = 0;
+    paths_->widening[i] = camera.widening, paths_->minAlpha[i] = 0;
     paths_->hits.instance[i] = HitArrays::kNone;
     if (camera.hit) paths_->hits.set(i, *camera.hit);
   }
@@ -142,8 +150,9 @@ void WidePaths::traceLastRays(const Task& task) {
   for (size_t k = 0; k < paths_->size; ++k) {
     int32_t& instance = paths_->hits.instance[k];
     instance = HitArrays::kNone;
+    const bool isMirrored = paths_->pdf[k] == 0;  // mirrors do not see all backs
     if (isBlack(transmittances_[k])) {
-      if (!isFollowed(task, k)) continue;
+      if (!isFollowed(task, k) && !isMirrored) continue;
       Hit hit;
       const Ray ray{paths_->rays.origin.at(k), paths_->rays.direction.at(k)};
       if (accel.intersect(ray, keys_[k], hit, visible)) paths_->hits.set(k, hit);
@@ -160,12 +169,16 @@ bool WidePaths::isFollowed(const Task& task, size_t path) const {
 
 void WidePaths::endAtLimit(const Task& task) {
   setKeys();
-  for (size_t k = 0; k < paths_->size; ++k)
-    if (kindOf(task, k) == PlainSurfaces::Kind::Other || isFollowed(task, k)) handOver(task, k);
+  for (size_t k = 0; k < paths_->size; ++k) {
+    const PlainSurfaces::Part& part = partOf(task, k);
+    const bool mayBeHidden = part.hidesBack && paths_->pdf[k] == 0;
+    if (part.kind == PlainSurfaces::Kind::Other || mayBeHidden || isFollowed(task, k))
+      handOver(task, k);
+  }
 }
 
-PlainSurfaces::Kind WidePaths::kindOf(const Task& task, size_t path) const {
-  return task.world().plain.part(size_t(paths_->hits.instance[path])).kind;
+const PlainSurfaces::Part& WidePaths::partOf(const Task& task, size_t path) const {
+  return task.world().plain.part(size_t(paths_->hits.instance[path]));
 }
 
 // Paths whose first hit notes what is seen in smooth mirrors leave the lanes there.
@@ -176,8 +189,7 @@ bool WidePaths::notesMirrored(const Task& task, size_t path) const {
 void WidePaths::leaveLanes(const Task& task) {
   size_t kept = 0;
   for (size_t k = 0; k < paths_->size; ++k)
-    if (kindOf(task, k) == PlainSurfaces::Kind::Other || notesMirrored(task, k) ||
-        task.cameras[size_t(paths_->id[k])].widening > 0)
+    if (partOf(task, k).kind == PlainSurfaces::Kind::Other || notesMirrored(task, k))
       handOver(task, k);
     else
       paths_->copy(*paths_, k, kept++);
@@ -201,6 +213,7 @@ void WidePaths::handOver(const Task& task, size_t k) {
   state.lobes = state.isDelta ? Lobes::Narrow : Lobes::Broad;
   state.depth = depth_;
   state.scattered = paths_->scattered[k] != 0;
+  state.minAlpha = paths_->minAlpha[k];
   state.length = paths_->length[k];
   task.rest.add(camera, state, paths_->hits.at(k));
   left_.push_back(uint32_t(id));
@@ -318,9 +331,11 @@ void WidePaths::scatter(const Task& task) {
 void WidePaths::scatterLanes(const Task& task, size_t i) {
   const Int8 isHere = firstLanes(paths_->size - i) & ~loadLanes(&vertices_.isHidden[i]);
   const Vector wo = L::splat(-1) * paths_->rays.direction.load(i);
-  const PlainBsdfLanes bsdf(vertices_.material(i), vertices_.normal.load(i),
-                            vertices_.geometricNormal.load(i), wo,
-                            task.world().bsdfTables.energy.get());
+  MaterialLanes material = vertices_.material(i);
+  const Float8 minAlpha = loadLanes(&paths_->minAlpha[i]);
+  material.roughness = larger(material.roughness, L::squareRoot(minAlpha));  // widen()
+  const PlainBsdfLanes bsdf(material, vertices_.normal.load(i), vertices_.geometricNormal.load(i),
+                            wo, task.world().bsdfTables.energy.get());
   const Vector throughput = paths_->throughput.load(i);
 
   const Vector toLight = lights_.direction.load(i);
@@ -356,6 +371,9 @@ void WidePaths::scatterLanes(const Task& task, size_t i) {
   on.store(&next_->length[n], loadLanes(&paths_->length[i]));
   on.store(&next_->id[n], loadLanes(&paths_->id[i]));
   on.store(&next_->scattered[n], loadLanes(&paths_->scattered[i]) | (bounce.pdf != 0));
+  const Float8 widening = loadLanes(&paths_->widening[i]);
+  on.store(&next_->widening[n], widening);
+  on.store(&next_->minAlpha[n], larger(minAlpha, widenedBy(widening, bounce.pdf)));
   next_->size += on.count();
   if (!next_->isRecorded) return;
   next_->position.store(n, vertices_.position.load(i), on);

@@ -41,6 +41,8 @@ class WidePaths {
     alignas(64) LaneArray<float> length;       // from the camera to the ray's origin
     alignas(64) LaneArray<int32_t> id;         // of the camera
     alignas(64) LaneArray<int32_t> scattered;  // -1 or 0, as in PathState
+    // As in PathState; 0: no regularisation.
+    alignas(64) LaneArray<float> widening, minAlpha;
     HitArrays hits;
     // The vertex at the ray's origin, if it is recorded for guides.
     bool isRecorded = false;
@@ -61,7 +63,7 @@ class WidePaths {
   void leaveLanes(const Task& task);
   bool isFollowed(const Task& task, size_t path) const;
   bool notesMirrored(const Task& task, size_t path) const;
-  PlainSurfaces::Kind kindOf(const Task& task, size_t path) const;
+  const PlainSurfaces::Part& partOf(const Task& task, size_t path) const;
   void handOver(const Task& task, size_t path);
   void fillVertices(const Task& task);
   void noteFirst(const Task& task);
