@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes: closed forms, mappings, turns."""
 
+import json
+import subprocess
+
 import numpy as np
 import pytest
 from conftest import PROJECT, sky
@@ -121,13 +124,18 @@ def test_wrong_arguments_are_refused(call):
         call(cb.Probe(sky()))
 
 
-def test_jpeg_tiff_with_unassociated_alpha_is_refused(tmp_path):
-    image = pytest.importorskip("PIL.Image")
+def test_jpeg_tiff_with_unassociated_alpha_is_refused(command):
+    image = pytest.importorskip("PIL.Image")  # writes them; the module itself reads no TIFF
     texels = np.zeros((32, 64, 4), np.uint8)
     texels[..., :3], texels[..., 3] = (200, 150, 100), 128
-    image.fromarray(texels).save(tmp_path / "jpeg.tif", compression="jpeg")
-    image.fromarray(texels).save(tmp_path / "lzw.tif", compression="tiff_lzw")
-    with pytest.raises(cb.InputError, match="alpha is unassociated and its compression JPEG"):
-        cb.Probe(tmp_path / "jpeg.tif")
+    image.fromarray(texels).save("jpeg.tif", compression="jpeg")
+    image.fromarray(texels).save("lzw.tif", compression="tiff_lzw")
+
+    def info(file):
+        return subprocess.run([command, "probe", "info", "--json", file], capture_output=True, text=True)
+
+    refused = info("jpeg.tif")
+    assert refused.returncode == 2
+    assert "alpha is unassociated and its compression JPEG" in refused.stderr
     red = ((200 / 255 + 0.055) / 1.055) ** 2.4 * 128 / 255
-    assert cb.Probe(tmp_path / "lzw.tif").radiance(AXES)[:, 0] == pytest.approx(red, rel=1e-3)
+    assert json.loads(info("lzw.tif").stdout)["mean"][0] == pytest.approx(red, rel=1e-3)

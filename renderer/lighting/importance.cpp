@@ -111,7 +111,7 @@ LightSource::Escaped Importance::escaped(const LightPoint&, const vec3& wi) cons
 
 bool Importance::sampleMany(std::span<const glm::uvec2> numbers,
                             std::span<DirectionSample> out) const {
-  std::array<uint32_t, kMaxMany> u, v;
+  std::array<uint32_t, kMaxMany> u{}, v{};
   for (size_t i = 0; i < numbers.size(); ++i) u[i] = numbers[i].x, v[i] = numbers[i].y;
   LightArrays found;
   sampleArrays(std::span(u).first(numbers.size()), v.data(), found);
@@ -126,8 +126,8 @@ void Importance::sampleArrays(std::span<const uint32_t> us, const uint32_t* vs,
   const size_t count = us.size();
   assert(count <= kMostInArrays);
   if (!(total_ > 0)) return out.pdf.fill(0);
-  alignas(64) LaneArray<int32_t> columns, rows;
-  alignas(64) LaneArray<float> u, v;
+  alignas(64) LaneArray<int32_t> columns{}, rows{};
+  alignas(64) LaneArray<float> u{}, v{};
   for (size_t i = 0; i < count; ++i) {
     rows[i] = rows_.sample(0, vs[i], v[i]);
     columns_.prefetchGuide(rows[i], us[i]);
@@ -137,7 +137,6 @@ void Importance::sampleArrays(std::span<const uint32_t> us, const uint32_t* vs,
     columns[i] = columns_.sample(rows[i], us[i], u[i]);
     probe_.prefetch(columns[i], rows[i]);
   }
-  for (size_t i = count; i % kWidth != 0; ++i) columns[i] = rows[i] = 0, u[i] = v[i] = 0;
   forLanes(count, [&](size_t first, int) {
     const auto point = field_.sample<Float8>(loadLanes(&columns[first]), loadLanes(&rows[first]),
                                              loadLanes(&u[first]), loadLanes(&v[first]));
@@ -150,7 +149,7 @@ void Importance::sampleArrays(std::span<const uint32_t> us, const uint32_t* vs,
 }
 
 void Importance::escapedMany(std::span<const Escape> rays, std::span<Escaped> out) const {
-  RayArrays arrays;
+  RayArrays arrays{};
   copyDirections(rays, arrays.direction);
   LightArrays found;
   escapedArrays(arrays, rays.size(), found);
@@ -167,7 +166,7 @@ void Importance::escapedArrays(const RayArrays& rays, size_t count, LightArrays&
 }
 
 void Importance::backgroundMany(std::span<const Sight> rays, std::span<Rgb> out) const {
-  RayArrays arrays;
+  RayArrays arrays{};
   copyDirections(rays, arrays.direction);
   LightArrays found;
   backgroundArrays(arrays, rays.size(), found);

@@ -14,7 +14,7 @@ namespace {
 // Up to kMostInArrays.
 void findHits(const Accel& accel, std::span<CameraSample> cameras, std::span<const uint32_t> keys,
               RayMask visible) {
-  RayArrays rays;
+  RayArrays rays{};
   for (size_t i = 0; i < cameras.size(); ++i) {
     rays.origin.set(i, cameras[i].ray.origin);
     rays.direction.set(i, cameras[i].ray.direction);
