@@ -2,6 +2,7 @@
 #include "math/cdf.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/memory.h"
 
@@ -43,16 +44,17 @@ double CdfRows::setRow(int row, std::span<const double> weights) {
 
 FractionCdfRows::FractionCdfRows(int rows, int columns)
     : columns_(columns),
-      ends_(longArray<uint32_t>(size_t(rows) * size_t(columns))),
+      ends_(longArray<uint32_t>(size_t(rows) * stride())),
       guide_(longArray<int32_t>(size_t(rows) * (kGuide + 1))) {}
 
 double FractionCdfRows::setRow(int row, std::span<const double> weights) {
   CdfRows exact(1, columns_, int(kGuide));
   const double total = exact.setRow(0, weights);
   const std::span<const double> cdf = exact.row(0);
-  uint32_t* const ends = &ends_[size_t(row) * size_t(columns_)];
+  uint32_t* const of = &ends_[size_t(row) * stride()];
   for (int i = 0; i < columns_; ++i)
-    ends[i] = uint32_t(std::max(std::ceil(cdf[size_t(i) + 1] * 0x1p32) - 1, 0.0));
+    of[i] = uint32_t(std::max(std::ceil(cdf[size_t(i) + 1] * 0x1p32) - 1, 0.0));
+  std::fill(of + columns_, of + stride(), std::numeric_limits<uint32_t>::max());
   std::ranges::copy(exact.guide(0), &guide_[size_t(row) * (kGuide + 1)]);
   return total;
 }

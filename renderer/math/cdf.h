@@ -69,26 +69,28 @@ class FractionCdfRows {
 
   // These fetch into the cache what sample() reads: first its range of columns, then their ends.
   void prefetchGuide(int row, uint32_t u) const { __builtin_prefetch(guide(row, u)); }
-  void prefetchEnds(int row, uint32_t u) const {
-    __builtin_prefetch(&ends_[size_t(row) * size_t(columns_) + size_t(*guide(row, u))]);
-  }
+  void prefetchEnds(int row, uint32_t u) const { __builtin_prefetch(ends(row) + *guide(row, u)); }
 
   // The column whose interval contains u; `within` is the position inside the interval, in [0, 1].
   int sample(int row, uint32_t u, float& within) const {
-    const uint32_t* ends = &ends_[size_t(row) * size_t(columns_)];
+    const uint32_t* const of = ends(row);
     const int32_t* range = guide(row, u);
     int i = range[0];
-    for (int last = range[1]; last - i > 8;) {
+    for (int last = range[1]; last - i > kAtOnce;) {
       const int middle = (i + last) / 2;
-      ends[middle - 1] < u ? i = middle : last = middle;
+      of[middle - 1] < u ? i = middle : last = middle;
     }
-    while (ends[i] < u) ++i;
-    const uint32_t begin = i > *guide(row, 0) ? ends[i - 1] + 1 : 0;
-    within = (float(u - begin) + 0.5f) / (float(ends[i] - begin) + 1);
+    for (int below = kAtOnce; below == kAtOnce; i += below) {
+      below = 0;  // a vector compares them all: a loop that ends at the column is mispredicted
+      for (int k = 0; k < kAtOnce; ++k) below += of[i + k] < u;
+    }
+    const uint32_t begin = i > *guide(row, 0) ? of[i - 1] + 1 : 0;
+    within = (float(u - begin) + 0.5f) / (float(of[i] - begin) + 1);
     return i;
   }
 
  private:
+  static constexpr int kAtOnce = 8;
   static constexpr int kGuideBits = 8;
   static constexpr size_t kGuide = size_t(1) << kGuideBits;
 
@@ -96,8 +98,13 @@ class FractionCdfRows {
     return &guide_[size_t(row) * (kGuide + 1) + (u >> (32 - kGuideBits))];
   }
 
+  size_t stride() const { return size_t(columns_) + kAtOnce - 1; }
+  const uint32_t* ends(int row) const { return &ends_[size_t(row) * stride()]; }
+
   int columns_;
-  std::vector<uint32_t> ends_;  // by row and column: the largest fraction of the column
+  // By row and column: the largest fraction of the column. Each row goes on with the largest number
+  // of all, for comparisons of kAtOnce.
+  std::vector<uint32_t> ends_;
   std::vector<int32_t> guide_;  // rows x (kGuide + 1), as of CdfRows
 };
 
