@@ -99,7 +99,7 @@ TEST(Allocation, IsUniformWithoutNoise) {
 
 // Radiance `kPeriod` in one of kPeriod samples on average, else 0: the pilot meets it in few
 // pixels.
-class RareLight : public Integrator {
+class RareLight : public SingleIntegrator {
  public:
   static constexpr uint64_t kPeriod = 50;
   Sample sample(const CameraSample&, PathContext& context) const override {
@@ -215,13 +215,13 @@ TEST(Adaptive, NeedsSixteenSamples) {
 
 // The left half of the picture is 1; on the right half one sample in two is 9, clamped to 3, the
 // other 1, and each loses 5 to a depth limit.
-class HalfNoisy : public Integrator {
+class HalfNoisy : public SingleIntegrator {
  public:
   Sample sample(const CameraSample& camera, PathContext& context) const override {
-    const bool isBright = camera.x >= 16 && hash(context.sampler.sampleKey(), 1) % 2 == 0;
+    const bool isBright = camera.pixel->x >= 16 && hash(context.sampler.sampleKey(), 1) % 2 == 0;
     const Rgb found(isBright ? 9.0f : 1.0f);
     context.depthCut.addFound(found);
-    if (camera.x >= 16) context.depthCut.add(DepthLimit::Depth, 5);
+    if (camera.pixel->x >= 16) context.depthCut.add(DepthLimit::Depth, 5);
     return context.clamp(found);
   }
 };
@@ -247,9 +247,11 @@ TEST(Adaptive, FractionsOfLightAreThoseOfThePicture) {
 // Where one pixel in a thousand is noisy, the limit of its rate leaves the rest of the samples
 // untaken; the stated number is that of the samples in the film.
 TEST(Adaptive, TheStatedNumberOfSamplesIsWhatPixelsTook) {
-  class OneNoisyPixel : public Integrator {
+  class OneNoisyPixel : public SingleIntegrator {
     Sample sample(const CameraSample& camera, PathContext& context) const override {
-      return Rgb(camera.x == 16 && camera.y == 16 ? hash(context.sampler.sampleKey(), 1) % 2 : 1);
+      return Rgb(camera.pixel->x == 16 && camera.pixel->y == 16
+                     ? hash(context.sampler.sampleKey(), 1) % 2
+                     : 1);
     }
   };
   const Scene scene;

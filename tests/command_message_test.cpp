@@ -175,6 +175,25 @@ TEST_F(SlowCommandMessage, NamesTheProbesScaleAsTheCauseOfABlackImage) {
   EXPECT_EQ(render({}).error.find("are black"), std::string::npos);
 }
 
+// A lamp lights what the probe, far brighter, does not reach: its sun is behind the triangle.
+TEST_F(SlowCommandMessage, CallsNoPictureBlackThatALampLights) {
+  Image sun(32, 16, 3);
+  sun.setRgb(16, 8, Rgb(1e9f));
+  writeImage(folder_ / "sun.exr", sun);
+  const auto messages = [&](const std::string& lamp) {
+    std::ofstream(folder_ / "s.toml")
+        << "model = '" << w_.save() << "'\n[probe]\nfile = 'sun.exr'\nmapping = 'lat-long'\n"
+        << "[camera]\nposition = [0.3, 0.3, 1]\nlook_at = [0.3, 0.3, 0]\nfov = 20\n"
+        << lamp;
+    const Words words{"render", folder_ / "s.toml", "--size", "4x4", "--samples", "16",
+                      "-o",     folder_ / "a.exr"};
+    return runCommand(words).error;
+  };
+  const std::string lamp = "[[light]]\ntype = 'point'\nposition = [0.3, 0.3, 1]\nintensity = 1\n";
+  EXPECT_NE(messages("").find("are black"), std::string::npos);
+  EXPECT_EQ(messages(lamp).find("are black"), std::string::npos) << messages(lamp);
+}
+
 // Each time there is light, until a setting takes it.
 TEST_F(SlowCommandMessage, NamesWhatTookTheLightOfABlackImage) {
   const auto expectNamed = [&](const Words& given, const std::string& names,

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <set>
 
 #include "front/plan_render.h"
 #include "image/io/read_image.h"
@@ -13,6 +14,8 @@
 #include "image/tonemap.h"
 #include "run_command.h"
 #include "small_model.h"
+
+#include <fmt/ranges.h>
 
 namespace chromeball::exposure_test {
 namespace {
@@ -135,6 +138,17 @@ TEST_F(Exposure, IsPrintedStoredAndRepeatable) {
   EXPECT_EQ(stopsIn(shown), stops);
   EXPECT_NE(shown.find("stops (from the header)"), std::string::npos) << shown;
   EXPECT_TRUE(bytes("a.png") == bytes("v.png"));
+}
+
+TEST_F(Exposure, IsTheSameForAllSeeds) {
+  Image sky = grey(32, 16, 1);
+  sky.setRgb(5, 2, Rgb(1e4f));
+  writeImage(folder_ / "probe.pfm", sky);
+  std::set<std::string> found;
+  for (const char* seed : {"0", "1", "2", "3", "4", "5", "6", "7"})
+    found.insert(stopsIn(
+        render({"--seed", seed, "--size", "6x4", "--samples", "1", "-o", folder_ / "a.png"}).out));
+  EXPECT_EQ(found.size(), 1u) << fmt::format("{}", fmt::join(found, ", "));
 }
 
 TEST_F(Exposure, ZeroIsRadiance) {

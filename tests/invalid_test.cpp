@@ -17,18 +17,22 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = INFINITY;
 // Counts the samples of each pixel.
 class Counter {
  public:
-  int next(const CameraSample& sample) const { return seen_[size_t(sample.y * 9 + sample.x)]++; }
+  int next(const CameraSample& sample) const {
+    return seen_[size_t(sample.pixel->y * 9 + sample.pixel->x)]++;
+  }
 
  private:
   mutable std::array<std::atomic<int>, 64> seen_{};
 };
 
 // Radiance 1, except for every second sample of a few pixels, which is invalid.
-class Faulty : public Integrator {
+class Faulty : public SingleIntegrator {
  public:
   Sample sample(const CameraSample& camera, PathContext&) const override {
     const bool second = counter_.next(camera) % 2 == 1;
-    const auto at = [&](int x, int y) { return camera.x == x && camera.y == y && second; };
+    const auto at = [&](int x, int y) {
+      return camera.pixel->x == x && camera.pixel->y == y && second;
+    };
     if (at(5, 2)) return Rgb(1, kNan, kInf);
     if (at(1, 3)) return Rgb(1, kInf, -1);
     if (at(7, 3)) return Rgb(1, 1, -0.5f);
@@ -75,7 +79,7 @@ TEST(InvalidSamples, AreCountedByCauseAndPixelAndDiscarded) {
   EXPECT_EQ(counts.rgb(0, 4), Rgb(0, 4, 0));
 }
 
-class Firefly : public Integrator {
+class Firefly : public SingleIntegrator {
  public:
   Sample sample(const CameraSample& camera, PathContext& context) const override {
     return context.clamp(counter_.next(camera) % 2 == 0 ? Rgb(20, 10, 0) : Rgb(1));

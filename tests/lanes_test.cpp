@@ -10,6 +10,7 @@
 #include "shading/bsdf_lanes.h"
 #include "small_scenes.h"
 #include "test_scene.h"
+#include "transport/camera_samples.h"
 #include "transport/vertex_arrays.h"
 #include "transport/wide_paths.h"
 
@@ -203,14 +204,14 @@ TEST(Lanes, PathsLeaveAtOtherSurfaces) {
     PathContext context{.sampler = PixelSampler(table, 0), .clamp = Clamp()};
     isServed = WidePaths::serves(tracer, context);
     if (!isServed) return size_t(0);
-    PixelNumbers pixel;
-    context.sampler.set(pixel, 0, 0, 0);
-    std::vector<CameraSample> cameras(16);
-    for (uint32_t i = 0; i < cameras.size(); ++i) {
-      cameras[i].pixel = &pixel, cameras[i].index = i;
-      cameras[i].ray = {{0.1f * float(i) - 0.8f, 5, 0.1f}, {0, -1, 0}};
+    CameraPixel pixel;
+    context.sampler.set(pixel.numbers, 0, 0, 0);
+    CameraSamples cameras;
+    for (uint32_t i = 0; i < 16; ++i) {
+      cameras.add(pixel, context.sampler, i, 0);
+      cameras.setRay(i, {{0.1f * float(i) - 0.8f, 5, 0.1f}, {0, -1, 0}});
     }
-    findFirstHits(world, cameras, kAllInstances, context.sampler);
+    cameras.findHits(world, kAllInstances);
     WidePaths wide;
     PathBatch rest;
     std::array<Rgb, 16> radiances;
@@ -260,16 +261,16 @@ TEST(Lanes, MirrorsSeeThroughHiddenBacks) {
     const SobolTable table(64, dimension::tabulated(6), 0);
     PathContext context{.sampler = PixelSampler(table, 0), .clamp = Clamp()};
     ASSERT_TRUE(WidePaths::serves(tracer, context));
-    PixelNumbers pixel;
-    context.sampler.set(pixel, 0, 0, 0);
-    std::vector<CameraSample> cameras(64);
-    for (uint32_t i = 0; i < cameras.size(); ++i) {
-      cameras[i].pixel = &pixel, cameras[i].index = i;
+    CameraPixel pixel;
+    context.sampler.set(pixel.numbers, 0, 0, 0);
+    CameraSamples cameras;
+    for (uint32_t i = 0; i < 64; ++i) {
       const vec3 target(0.02f * float(i) - 0.64f, 0, 0);
       const vec3 origin(0, 0.5f, 2);
-      cameras[i].ray = {origin, glm::normalize(target - origin)};
+      cameras.add(pixel, context.sampler, i, 0);
+      cameras.setRay(i, {origin, glm::normalize(target - origin)});
     }
-    findFirstHits(world, cameras, kAllInstances, context.sampler);
+    cameras.findHits(world, kAllInstances);
     const auto found = PathBatch::traced(cameras, tracer, context);
     float brightest = 0;
     for (size_t i = 0; i < cameras.size(); ++i) {

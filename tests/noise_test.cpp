@@ -229,7 +229,7 @@ TEST(SlowNoise, IsCorrectWhenItStopsTheRender) {
 
 // Radiance `period` in one of `period` samples on average and 0 in the others; always 0 if `period`
 // is 0.
-class RareLight : public Integrator {
+class RareLight : public SingleIntegrator {
  public:
   explicit RareLight(uint64_t period) : period_(period) {}
   Sample sample(const CameraSample&, PathContext& context) const override {

@@ -14,16 +14,16 @@
 namespace chromeball::path_batch_test {
 namespace {
 
-// Hides PathIntegrator::sampleMany().
-class OneAtATime : public Integrator {
+class OneAtATime : public SingleIntegrator {
  public:
-  explicit OneAtATime(const PathTracer& tracer) : single_(tracer) {}
-  Sample sample(const CameraSample& camera, PathContext& context) const override {
-    return single_.sample(camera, context);
-  }
+  explicit OneAtATime(const PathTracer& tracer) : tracer_(tracer) {}
 
  private:
-  PathIntegrator single_;
+  Sample sample(const CameraSample& camera, PathContext& context) const override {
+    return context.clamp(tracer_.radiance(camera.path(), camera.hit, context));
+  }
+
+  PathTracer tracer_;
 };
 
 void expectSame(const NamedScene& named, const Camera& camera, const LightSource& lighting,

@@ -16,7 +16,7 @@ namespace chromeball {
 // from the hemisphere, instead of the light of other surfaces. The light of sources, also through
 // clear sheets and bodies, and the light of specular lobes is path traced, as is everything where
 // the cache has no record.
-class CachedIntegrator : public Integrator {
+class CachedIntegrator : public SingleIntegrator {
  public:
   // All arguments must outlive this. The cache must not change meanwhile. The tracer does not
   // estimate the light beyond the limits of depth, and its paths have two bounces at least.

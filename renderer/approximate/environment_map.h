@@ -50,7 +50,7 @@ class EnvironmentLight {
 // lamps. With ambient occlusion, a cosine-distributed ray decides on the diffuse light; with
 // reflection occlusion, one that GGX microfacets reflect on the light of each specular lobe.
 // Transmitted light is never blocked.
-class EnvironmentMapIntegrator : public Integrator {
+class EnvironmentMapIntegrator : public SingleIntegrator {
  public:
   // All arguments must outlive this. `lighting`: gives what the camera sees behind the scene.
   EnvironmentMapIntegrator(const World& world, const LightSource& lighting,

@@ -7,6 +7,7 @@
 #include "math/vec.h"
 #include "math/warp.h"
 #include "trace/accel.h"
+#include "transport/camera_samples.h"
 #include "transport/context.h"
 #include "transport/first_surface.h"
 #include "transport/world.h"
@@ -58,19 +59,13 @@ SurfaceLayers::SurfaceLayers(const Integrator& picture, const PathTracer& tracer
       wantsBent_(contains(wanted, Aov::BentNormal)),
       wantsIrradiance_(contains(wanted, Aov::Irradiance)) {}
 
-Sample SurfaceLayers::sample(const CameraSample& camera, PathContext& context) const {
-  Sample found = picture_.sample(camera, context);
-  const auto defect = measure(camera, context);
-  if (!found.defect) found.defect = defect;
-  return found;
-}
-
-void SurfaceLayers::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+void SurfaceLayers::sampleMany(const CameraSamples& cameras, PathContext& context,
                                std::span<Sample> samples) const {
   picture_.sampleMany(cameras, context, samples);
   for (size_t i = 0; i < cameras.size(); ++i) {
-    cameras[i].start(context.sampler);
-    const auto defect = measure(cameras[i], context);
+    const CameraSample camera = cameras[i];
+    camera.start(context.sampler);
+    const auto defect = measure(camera, context);
     if (!samples[i].defect) samples[i].defect = defect;
   }
 }

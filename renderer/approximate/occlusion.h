@@ -51,9 +51,8 @@ class SurfaceLayers : public Integrator {
   SurfaceLayers(const Integrator& picture, const PathTracer& tracer, std::span<const Aov> wanted,
                 const Occlusion& occlusion);
 
-  Sample sample(const CameraSample& camera, PathContext& context) const override;
   size_t batch() const override { return picture_.batch(); }
-  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+  void sampleMany(const CameraSamples& cameras, PathContext& context,
                   std::span<Sample> samples) const override;
   std::vector<Accumulation> layers() const override { return picture_.layers(); }
   std::vector<std::string> groups() const override { return picture_.groups(); }

@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "transport/camera_samples.h"
+
 namespace chromeball {
 namespace {
 
@@ -97,7 +99,7 @@ DifferentialSample sharedPart(const CompositeWorlds& worlds, size_t i, const Cam
 
 }  // namespace
 
-void differentialRadiance(const CompositeWorlds& worlds, std::span<const CameraSample> cameras,
+void differentialRadiance(const CompositeWorlds& worlds, const CameraSamples& cameras,
                           bool behindObjects, PathContext& context,
                           std::span<DifferentialSample> samples) {
   thread_local Rests rests;
@@ -115,7 +117,7 @@ void differentialRadiance(const CompositeWorlds& worlds, std::span<const CameraS
     samples[without.samples[k]].without += without.paths.radiance(k);
 }
 
-void DifferentialIntegrator::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+void DifferentialIntegrator::sampleMany(const CameraSamples& cameras, PathContext& context,
                                         std::span<Sample> samples) const {
   std::array<DifferentialSample, PathBatch::kMaxPaths> found;
   differentialRadiance(worlds_, cameras, behindObjects_, context, found);
@@ -140,7 +142,8 @@ Sample DifferentialIntegrator::composed(const DifferentialSample& s, const Camer
   const Rgb difference = context.clamp(s.difference());
   layers[DifferentialFilm::kLocal] = without;
   layers[DifferentialFilm::kDifference] = difference;
-  return {(plate_.empty() ? without : plate_.rgb(camera.x, camera.y)) + difference, std::nullopt};
+  return {(plate_.empty() ? without : plate_.rgb(camera.pixel->x, camera.pixel->y)) + difference,
+          std::nullopt};
 }
 
 }  // namespace chromeball

@@ -67,7 +67,7 @@ struct DifferentialSample {
 // from there on, the paths of all samples are traced together. `behindObjects`: also estimate
 // L_noobj where the camera sees an object. `samples`: output, as many as cameras, at most
 // PathBatch::kMaxPaths.
-void differentialRadiance(const CompositeWorlds& worlds, std::span<const CameraSample> cameras,
+void differentialRadiance(const CompositeWorlds& worlds, const CameraSamples& cameras,
                           bool behindObjects, PathContext& context,
                           std::span<DifferentialSample> samples);
 
@@ -81,12 +81,7 @@ class DifferentialIntegrator : public Integrator {
   DifferentialIntegrator(const CompositeWorlds& worlds, const Image& plate, bool behindObjects)
       : worlds_(worlds), plate_(plate), behindObjects_(behindObjects) {}
 
-  Sample sample(const CameraSample& camera, PathContext& context) const override {
-    Sample found;
-    sampleMany({&camera, 1}, context, {&found, 1});
-    return found;
-  }
-  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+  void sampleMany(const CameraSamples& cameras, PathContext& context,
                   std::span<Sample> samples) const override;
   std::vector<Accumulation> layers() const override { return DifferentialFilm::layers(); }
 

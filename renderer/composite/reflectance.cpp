@@ -25,7 +25,7 @@ struct VisibleSurfaces {
   Image farthest, baseColor, emission, unlit;
 };
 
-class VisibilityIntegrator : public Integrator {
+class VisibilityIntegrator : public SingleIntegrator {
  public:
   enum Layer { kDepth, kCoverage, kBaseColor, kEmission, kUnlit };
 
@@ -65,7 +65,7 @@ class VisibilityIntegrator : public Integrator {
 };
 
 // Radiance of the local scene with the base colour of the first visible surface replaced.
-class RepaintedIntegrator : public Integrator {
+class RepaintedIntegrator : public SingleIntegrator {
  public:
   RepaintedIntegrator(const PathTracer& tracer, const Rgb& baseColor)
       : tracer_(tracer), baseColor_(baseColor) {}

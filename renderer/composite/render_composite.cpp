@@ -11,7 +11,7 @@ namespace {
 
 // Renders one of the two worlds. The sum of both renders is the composite: with objects the samples
 // are L_objects or plate + L_obj, without objects -L_noobj (0 where an object is visible).
-class OneWorld : public Integrator {
+class OneWorld : public SingleIntegrator {
  public:
   OneWorld(const CompositeWorlds& worlds, bool withObjects, const Image& plate, bool behindObjects)
       : worlds_(worlds), withObjects_(withObjects), plate_(plate), behindObjects_(behindObjects) {}
@@ -29,7 +29,7 @@ class OneWorld : public Integrator {
       layers[DifferentialFilm::kCoverage] = Rgb(objectFirst);
       layers[objectFirst ? DifferentialFilm::kObjects : DifferentialFilm::kDifference] = found;
       if (objectFirst) return found;
-      return {plate_.rgb(camera.x, camera.y) + found, defectOf(found, false)};
+      return {plate_.rgb(camera.pixel->x, camera.pixel->y) + found, defectOf(found, false)};
     }
     if (objectFirst && !behindObjects_) return Rgb(0);
     start = camera.path();

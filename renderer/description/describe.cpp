@@ -90,6 +90,7 @@ void addRender(const RenderDescription& description, Json& d) {
                                                      *s.noiseLimit, 100 * *s.noiseLimit)
                                          : Json()},
             {"time-limit", numberOf(s.timeLimit)},
+            {"samples-limit", s.samplesOfAll() < kMaxSamples ? Json(s.samplesOfAll()) : Json()},
             {"crop", cropText(s)},
             {"shard", shardText(s.shard)},
             {"adaptive", nameAt(s.adaptive, {"off", "on"})},

@@ -100,10 +100,7 @@ class PixelSampler {
       pixel.shifts[d + 1] = uint32_t(bits >> 32);
     }
   }
-  void startSample(const PixelNumbers& pixel, uint32_t i) {
-    sample_ = sampleAt(pixel, i);
-    base_ = 0;
-  }
+  void startSample(const PixelNumbers& pixel, uint32_t i) { startSample(sampleAt(pixel, i)); }
   // Later dimensions are relative to the vertex's block.
   void startVertex(int depth) { base_ = blockOf(depth); }
 
@@ -141,6 +138,12 @@ class PixelSampler {
     const uint32_t index = pixel.first + i * pixel.stride;
     return {table_->point(index), pixel.shifts.data(), pixel.key, index};
   }
+  void startSample(const Sample& sample) {
+    sample_ = sample;
+    base_ = 0;
+  }
+  // A number before the first vertex's.
+  uint32_t bits(const Sample& sample, int d) const { return bitsOf(sample, d); }
   // The bits of all kPerVertex numbers of a vertex.
   void vertexBits(const Sample& sample, int depth, uint32_t* out) const {
     const int base = blockOf(depth);

@@ -45,7 +45,7 @@ PixelWorker PixelRenderer::makeWorker() const {
   return {
       .context = {.sampler = PixelSampler(table_, settings_.seed), .clamp = Clamp(settings_.clamp)},
       .invalid = {},
-      .cameras = std::vector<CameraSample>(batch),
+      .cameras = {},
       .samples = std::vector<Sample>(batch),
       .firsts = std::vector<FirstHit>(batch),
       .layers = std::vector<Rgb>(batch * layerCount_),
@@ -79,35 +79,26 @@ void PixelRenderer::render(PixelWorker& worker, int x, int y, uint32_t from, uin
         half, samplesOf(half, from), samplesOf(half, to), [&](const SampleSequence::Run& run) {
           assert(worker.blockCount < worker.blocks.size());
           SampleBlock& block = worker.blocks[worker.blockCount++];
-          block.x = x, block.y = y, block.half = half, block.run = run, block.sums = {};
-          worker.context.sampler.set(
-              block.numbers, uint32_t(window_.x + x), uint32_t(window_.y + y),
-              firstBlock + Film::kHalves * run.table + uint64_t(half), run.first, run.stride);
-          addBlock(worker, own);
+          block.x = x, block.y = y, block.run = run, block.sums = {};
+          CameraPixel& pixel = block.pixel;
+          pixel.x = window_.x + x, pixel.y = window_.y + y, pixel.half = half, pixel.beam = own;
+          worker.context.sampler.set(pixel.numbers, uint32_t(pixel.x), uint32_t(pixel.y),
+                                     firstBlock + Film::kHalves * run.table + uint64_t(half),
+                                     run.first, run.stride);
+          addBlock(worker);
         });
 }
 
 // Takes the samples of the last block; those that fill the arrays are traced with all before.
-void PixelRenderer::addBlock(PixelWorker& worker, const Beam& beam) const {
-  const bool wantsFirst = !result_.aovs.empty() || !result_.features.empty();
+void PixelRenderer::addBlock(PixelWorker& worker) const {
   for (uint32_t i = 0; i < worker.blocks[worker.blockCount - 1].run.count; ++i) {
-    if (worker.sampleCount == worker.cameras.size()) {
+    if (worker.cameras.size() == worker.samples.size()) {
       traceSamples(worker);
       endBlocks(worker, worker.blockCount - 1);
     }
     const SampleBlock& block = worker.blocks[worker.blockCount - 1];
-    const size_t k = worker.sampleCount++;
-    if (wantsFirst) worker.firsts[k] = {};
-    worker.blockOf[k] = uint32_t(worker.blockCount - 1);
-    worker.cameras[k] = {.x = window_.x + block.x,
-                         .y = window_.y + block.y,
-                         .half = block.half,
-                         .pixel = &block.numbers,
-                         .index = i,
-                         .beam = beam,
-                         .widening = wideningOf(block, i),
-                         .first = wantsFirst ? &worker.firsts[k] : nullptr,
-                         .layers = std::span(worker.layers).subspan(k * layerCount_, layerCount_)};
+    worker.blockOf[worker.cameras.size()] = uint32_t(worker.blockCount - 1);
+    worker.cameras.add(block.pixel, worker.context.sampler, i, wideningOf(block, i));
   }
 }
 
@@ -120,67 +111,100 @@ void PixelRenderer::finish(PixelWorker& worker) const {
 void PixelRenderer::endBlocks(PixelWorker& worker, size_t count) const {
   for (size_t k = 0; k < count; ++k) {
     const SampleBlock& block = worker.blocks[k];
-    result_.film.add(block.x, block.y, block.half, block.sums);
+    result_.film.add(block.x, block.y, block.pixel.half, block.sums);
   }
   if (count > 0 && count < worker.blockCount) std::swap(worker.blocks[0], worker.blocks[count]);
   worker.blockCount -= count;
 }
 
-// Generates and traces camera rays.
-void PixelRenderer::traceCameraRays(PixelSampler& sampler, std::span<CameraSample> cameras) const {
-  for (CameraSample& camera : cameras) {
-    camera.start(sampler);
+// Camera rays in lanes.
+void PixelRenderer::aim(const PixelSampler& sampler, CameraSamples& cameras) const {
+  using L = LanesOf<Float8>;
+  const vec3& origin = cameraRays_.origin();
+  for (size_t i = 0; i < cameras.size(); i += L::kCount) {
+    std::array<float, L::kCount> u{}, v{};
+    for (size_t k = 0; k < std::min<size_t>(L::kCount, cameras.size() - i); ++k) {
+      const PixelSampler::Sample& numbers = cameras.numbers(i + k);
+      const CameraPixel& pixel = cameras.pixel(i + k);
+      u[k] = float(pixel.x) + toUnit(sampler.bits(numbers, dimension::kPixel));
+      v[k] = float(pixel.y) + toUnit(sampler.bits(numbers, dimension::kPixel + 1));
+    }
+    cameras.setRays(i, {L::splat(origin.x), L::splat(origin.y), L::splat(origin.z)},
+                    cameraRays_.directions(loadLanes(u.data()) / float(settings_.width),
+                                           loadLanes(v.data()) / float(settings_.height)));
+  }
+}
+
+void PixelRenderer::aimSingly(PixelSampler& sampler, CameraSamples& cameras) const {
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const CameraPixel& pixel = cameras.pixel(i);
+    sampler.startSample(cameras.numbers(i));
     const vec2 offset = sampler.get2(dimension::kPixel);
-    const float u = (float(camera.x) + offset.x) / float(settings_.width);
-    const float v = (float(camera.y) + offset.y) / float(settings_.height);
-    Ray& ray = camera.ray;
+    const float u = (float(pixel.x) + offset.x) / float(settings_.width);
+    const float v = (float(pixel.y) + offset.y) / float(settings_.height);
+    Ray ray{};
     if (drawsTimes_) ray.time = sampler.time();
-    const auto aim = [&](const CameraRays& rays) {
+    const auto aimWith = [&](const CameraRays& rays) {
       if (rays.hasLens())
         rays.ray(u, v, sampler.get2(dimension::kLens), ray.origin, ray.direction);
       else
         rays.ray(u, v, ray.origin, ray.direction);
     };
-    moving_ ? aim(moving_->at(ray.time)) : aim(cameraRays_);
+    moving_ ? aimWith(moving_->at(ray.time)) : aimWith(cameraRays_);
+    cameras.setRay(i, ray);
   }
-  findFirstHits(world_, cameras, integrator_.visible(), sampler);
 }
 
 float PixelRenderer::wideningOf(const SampleBlock& block, uint32_t index) const {
   if (!settings_.regularize) return 0;
   const uint64_t sample = Film::kHalves * (block.run.table * table_.size() + block.run.first +
                                            index * block.run.stride) +
-                          uint64_t(block.half);
+                          uint64_t(block.pixel.half);
   return regularizationWidth(
       uint32_t(std::min<uint64_t>(sample, std::numeric_limits<uint32_t>::max())));
 }
 
 void PixelRenderer::traceSamples(PixelWorker& worker) const {
-  const auto cameras = std::span(worker.cameras).first(worker.sampleCount);
-  const auto samples = std::span(worker.samples).first(worker.sampleCount);
-  traceCameraRays(worker.context.sampler, cameras);
-  std::fill_n(worker.layers.begin(), cameras.size() * layerCount_, Rgb(0));
-  integrator_.sampleMany(cameras, worker.context, samples);
-  for (size_t k = 0; k < cameras.size(); ++k)
-    add(worker, worker.blocks[worker.blockOf[k]], cameras[k], samples[k]);
-  worker.sampleCount = 0;
+  CameraSamples& cameras = worker.cameras;
+  const size_t count = cameras.size();
+  const bool wantsFirst = !result_.aovs.empty() || !result_.features.empty();
+  const auto firsts = std::span(worker.firsts).first(wantsFirst ? count : 0);
+  const auto layers = std::span(worker.layers).first(count * layerCount_);
+  std::ranges::fill(firsts, FirstHit{});
+  std::ranges::fill(layers, Rgb(0));
+  cameras.writeFirstHits(firsts);
+  cameras.writeLayers(layers, layerCount_);
+  if (cameraRays_.isPlain() && !drawsTimes_)
+    aim(worker.context.sampler, cameras);
+  else
+    aimSingly(worker.context.sampler, cameras);
+  cameras.findHits(world_, integrator_.visible());
+  integrator_.sampleMany(cameras, worker.context, std::span(worker.samples).first(count));
+  for (size_t k = 0; k < count; ++k) add(worker, k);
+  cameras.clear();
 }
 
-void PixelRenderer::add(PixelWorker& worker, SampleBlock& block, const CameraSample& camera,
-                        const Sample& sample) const {
-  const int x = block.x, y = block.y, half = block.half;
+// Adds sample `k` to its block, and its layers to their films.
+void PixelRenderer::add(PixelWorker& worker, size_t k) const {
+  const Sample& sample = worker.samples[k];
+  SampleBlock& block = worker.blocks[worker.blockOf[k]];
+  const CameraPixel& pixel = block.pixel;
+  const int x = block.x, y = block.y;
   if (sample.defect) {
-    worker.invalid.add(*sample.defect, camera.x, camera.y);
+    worker.invalid.add(*sample.defect, pixel.x, pixel.y);
     result_.aovs.add(x, y, *sample.defect);
   } else {
     block.sums.add(sample.radiance);
-    if (!result_.layers.empty()) result_.layers.add(x, y, half, camera.layers);
+    if (!result_.layers.empty())
+      result_.layers.add(x, y, pixel.half,
+                         std::span(worker.layers).subspan(k * layerCount_, layerCount_));
   }
-  if (camera.first) {
-    camera.first->depth = raysAt(camera.ray.time).depth(camera.ray.direction, camera.first->depth);
-    if (!result_.aovs.empty()) result_.aovs.add(x, y, *camera.first);
+  const CameraSamples& cameras = worker.cameras;
+  if (FirstHit* const first = cameras.first(k)) {
+    first->depth = raysAt(cameras.time(k)).depth(cameras.direction(k), first->depth);
+    if (!result_.aovs.empty()) result_.aovs.add(x, y, *first);
     if (!result_.features.empty() && !sample.defect)
-      result_.features.add(x, y, half, *camera.first, sample.radiance);
+      result_.features.add(x, y, pixel.half, *first, sample.radiance);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "render/render.h"
 #include "render/render_settings.h"
 #include "scene/camera.h"
+#include "transport/camera_samples.h"
 #include "transport/integrator.h"
 
 namespace chromeball {
@@ -64,9 +65,9 @@ class SampleSequence {
 
 // Samples of a half of a pixel that share a randomisation of the table; x and y are of the film.
 struct SampleBlock {
-  int x = 0, y = 0, half = 0;
+  int x = 0, y = 0;
+  CameraPixel pixel;
   SampleSequence::Run run{};
-  PixelNumbers numbers;
   SampleSums sums;
 };
 
@@ -76,8 +77,8 @@ struct PixelWorker {
   PathContext context;
   InvalidSamples invalid;
   // Samples that wait, and their blocks, in the order of the samples.
-  size_t sampleCount = 0, blockCount = 0;
-  std::vector<CameraSample> cameras;
+  size_t blockCount = 0;
+  CameraSamples cameras;
   std::vector<Sample> samples;
   std::vector<FirstHit> firsts;
   std::vector<Rgb> layers;  // of all samples
@@ -105,12 +106,12 @@ class PixelRenderer {
 
  private:
   CameraRays raysAt(float time) const { return moving_ ? moving_->at(time) : cameraRays_; }
-  void addBlock(PixelWorker& worker, const Beam& beam) const;
-  void traceCameraRays(PixelSampler& sampler, std::span<CameraSample> cameras) const;
+  void addBlock(PixelWorker& worker) const;
+  void aim(const PixelSampler& sampler, CameraSamples& cameras) const;
+  void aimSingly(PixelSampler& sampler, CameraSamples& cameras) const;
   void traceSamples(PixelWorker& worker) const;
   void endBlocks(PixelWorker& worker, size_t count) const;
-  void add(PixelWorker& worker, SampleBlock& block, const CameraSample& camera,
-           const Sample& sample) const;
+  void add(PixelWorker& worker, size_t k) const;
   float wideningOf(const SampleBlock& block, uint32_t index) const;
 
   const Integrator& integrator_;

@@ -111,6 +111,16 @@ class CameraRays {
     direction = orthographic_ ? forward_ : glm::normalize(point);
   }
 
+  // The directions of rays, in lanes (math/lanes.h), of a pinhole that does not distort; all begin
+  // at origin().
+  bool isPlain() const { return !orthographic_ && !hasLens() && !distorts_; }
+  const vec3& origin() const { return position_; }
+  template <class F>
+  Lanes3<F> directions(F u, F v) const {
+    const auto along = [&](int i) { return corner_[i] + u * across_[i] + v * down_[i]; };
+    return normalized(Lanes3<F>{along(0), along(1), along(2)});
+  }
+
   // The ray from a point of the thin lens to the same point of the plane in focus. `lens` in
   // [0, 1)^2 is mapped uniformly to the area of the lens.
   bool hasLens() const { return lensRadius_ > 0; }

@@ -93,7 +93,7 @@ RenderSettings meterSettings(RenderSettings settings) {
       std::min(1.0, std::sqrt(kPixels / (double(settings.width) * settings.height)));
   settings.width = std::max(1, int(std::lround(scale * settings.width)));
   settings.height = std::max(1, int(std::lround(scale * settings.height)));
-  settings.crop.reset(), settings.shard = {};
+  settings.crop.reset(), settings.shard = {}, settings.seed = 0;
   settings.samples = kSamples, settings.timeLimit.reset(), settings.noiseLimit.reset();
   settings.adaptive = settings.denoise = settings.lightGroups = settings.shadowMattes = false;
   settings.guiding = Guiding::Off, settings.cacheError.reset();

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 // Contents of files are compared instead.
 constexpr std::array kPaths = {"scene", "probe", "camera-file", "files"};
-constexpr std::array kLimits = {"noise-limit", "time-limit"};
+constexpr std::array kLimits = {"samples-limit", "noise-limit", "time-limit"};
 constexpr std::array kOfImage = {"camera",        "cameraPosition",
                                  "cameraFov",     "lensRadius",
                                  "focus",         "distortion",

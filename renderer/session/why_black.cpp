@@ -212,11 +212,12 @@ std::optional<std::string> whyBlack(const LoadedScene& loaded, const Accel& acce
                                     const RenderResult& result, const SettingWords& words) {
   const RenderDescription& description = loaded.description;
   const Image mean = result.film.mean();
-  constexpr float kDark = 1e-4f;  // of the probe's mean
+  constexpr float kDark = 1e-4f;  // of the probe's mean, or of 1: lamps, or a part of the probe,
+                                  // may light a picture well under a probe that is far brighter
   constexpr double kMax = 0.8, kNearlyAll = 0.95;
   constexpr int kGrid = 48, kFine = 1024;
   const float probeMean = meanLuminance(loaded.probe);
-  const Seen seen = lookThrough(loaded, accel, mean, kDark * probeMean, kGrid);
+  const Seen seen = lookThrough(loaded, accel, mean, kDark * std::min(probeMean, 1.0f), kGrid);
   if (seen.surfaces == 0) {
     const Seen finer = lookThrough(loaded, accel, mean, 0, kFine);
     return finer.surfaces == 0 ? std::optional(noneInView(loaded.scene, finer, words))

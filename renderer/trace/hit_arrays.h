@@ -21,6 +21,10 @@ struct HitArrays {
     if (instance[i] == kNone) return {};
     return Hit{uint32_t(instance[i]), uint32_t(triangle[i]), {u[i], v[i]}, distance[i]};
   }
+  void set(size_t i, const std::optional<Hit>& hit) {
+    instance[i] = kNone;
+    if (hit) set(i, *hit);
+  }
   void set(size_t i, const Hit& hit) {
     instance[i] = int32_t(hit.instance), triangle[i] = int32_t(hit.triangle);
     u[i] = hit.barycentric.x, v[i] = hit.barycentric.y, distance[i] = hit.distance;

@@ -4,54 +4,22 @@
 #include <algorithm>
 #include <new>
 
+#include "transport/camera_samples.h"
 #include "transport/light_groups.h"
 #include "transport/wide_paths.h"
 
 namespace chromeball {
 
-namespace {
-
-// Up to kMostInArrays.
-void findHits(const Accel& accel, std::span<CameraSample> cameras, std::span<const uint32_t> keys,
-              RayMask visible) {
-  RayArrays rays{};
+void SingleIntegrator::sampleMany(const CameraSamples& cameras, PathContext& context,
+                                  std::span<Sample> samples) const {
   for (size_t i = 0; i < cameras.size(); ++i) {
-    rays.origin.set(i, cameras[i].ray.origin);
-    rays.direction.set(i, cameras[i].ray.direction);
-  }
-  HitArrays hits;
-  accel.intersect(rays, cameras.size(), keys, Accel::Coherence::High, hits, visible);
-  for (size_t i = 0; i < cameras.size(); ++i) cameras[i].hit = hits.at(i);
-}
-
-// The same of rays at different times.
-void findMovingHits(const Accel& accel, std::span<CameraSample> cameras,
-                    std::span<const uint32_t> keys, RayMask visible) {
-  std::array<Ray, kMostInArrays> rays;
-  std::array<std::optional<Hit>, kMostInArrays> hits;
-  const size_t count = cameras.size();
-  for (size_t i = 0; i < count; ++i) rays[i] = cameras[i].ray;
-  accel.intersect(std::span(rays).first(count), keys, Accel::Coherence::High,
-                  std::span(hits).first(count), visible);
-  for (size_t i = 0; i < count; ++i) cameras[i].hit = hits[i];
-}
-
-}  // namespace
-
-void findFirstHits(const World& world, std::span<CameraSample> cameras, RayMask visible,
-                   const PixelSampler& sampler) {
-  std::array<uint32_t, kMostInArrays> keys;
-  const auto find = world.scene.moves ? findMovingHits : findHits;
-  for (size_t first = 0; first < cameras.size(); first += kMostInArrays) {
-    const auto some = cameras.subspan(first, std::min(kMostInArrays, cameras.size() - first));
-    // Other surfaces at the place of a hit are met with the keys of the vertex.
-    for (size_t i = 0; i < some.size(); ++i)
-      keys[i] = PixelSampler::vertexKey(sampler.sampleAt(*some[i].pixel, some[i].index), 0);
-    find(world.accel, some, std::span(keys).first(some.size()), visible);
+    const CameraSample camera = cameras[i];
+    camera.start(context.sampler);
+    samples[i] = sample(camera, context);
   }
 }
 
-void PathIntegrator::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+void PathIntegrator::sampleMany(const CameraSamples& cameras, PathContext& context,
                                 std::span<Sample> samples) const {
   const std::span<const Rgb> radiances = PathBatch::traced(cameras, tracer_, context);
   for (size_t i = 0; i < cameras.size(); ++i) samples[i] = context.clamp(radiances[i]);
@@ -73,8 +41,8 @@ struct PathBatch::Task {
   RayMask visible() const { return tracer.settings().visible; }
 };
 
-std::span<const Rgb> PathBatch::traced(std::span<const CameraSample> cameras,
-                                       const PathTracer& tracer, PathContext& context) {
+std::span<const Rgb> PathBatch::traced(const CameraSamples& cameras, const PathTracer& tracer,
+                                       PathContext& context) {
   thread_local PathBatch batch;
   thread_local WidePaths wide;
   thread_local std::vector<Rgb> radiances;
@@ -86,7 +54,7 @@ std::span<const Rgb> PathBatch::traced(std::span<const CameraSample> cameras,
     batch.follow(tracer, context);
     for (size_t k = 0; k < wide.left().size(); ++k) radiances[wide.left()[k]] = batch.radiance(k);
   } else {
-    for (const CameraSample& camera : cameras) batch.add(camera);
+    for (size_t i = 0; i < cameras.size(); ++i) batch.add(cameras[i]);
     batch.follow(tracer, context);
     for (size_t i = 0; i < cameras.size(); ++i) radiances[i] = batch.radiance(i);
   }
@@ -99,7 +67,7 @@ void PathBatch::add(const CameraSample& camera, const PathState& state,
                     const std::optional<Hit>& hit) {
   if (count_ == paths_.size()) grow();
   new (&paths_[count_]) PathState(state);  // in place, for a state is large
-  cameras_[count_] = &camera;
+  cameras_[count_] = {camera.numbers, camera.layers};
   hits_[count_] = hit;
   ++count_;
 }
@@ -132,14 +100,14 @@ void PathBatch::follow(const PathTracer& tracer, PathContext& context) {
 // The sampler continues with the numbers for the path's next vertex, and light groups with its
 // sums.
 void PathBatch::select(uint32_t path, Task& task) {
-  cameras_[path]->start(task.context.sampler);
+  task.context.sampler.startSample(cameras_[path].numbers);
   task.context.sampler.startVertex(paths_[path].depth);
   selectGroups(path, task);
 }
 
 void PathBatch::selectGroups(uint32_t path, Task& task) {
   if (task.context.groups) [[unlikely]]
-    task.context.groups->select(path, cameras_[path]->layers);
+    task.context.groups->select(path, cameras_[path].layers);
 }
 
 void PathBatch::endEscaped(Task& task) {

@@ -8,33 +8,11 @@
 
 #include "film/film.h"
 #include "film/layer_film.h"
-#include "transport/path.h"
+#include "transport/camera_sample.h"
 
 namespace chromeball {
 
-// A camera ray through pixel (x, y) and its closest hit. `half`: which half of the pixel's samples
-// (Film) it belongs to. Its random numbers are those of `pixel`, which must outlive it, for sample
-// `index`.
-struct CameraSample {
-  int x = 0, y = 0, half = 0;
-  const PixelNumbers* pixel = nullptr;
-  uint32_t index = 0;
-  Ray ray{};
-  std::optional<Hit> hit;
-  Beam beam{};                // the ray's footprint, for texture filtering
-  float widening = 0;         // as in PathState
-  FirstHit* first = nullptr;  // output; null: not wanted
-  std::span<Rgb> layers{};    // output: one value per layer of Integrator::layers(), initially 0
-
-  void start(PixelSampler& sampler) const { sampler.startSample(*pixel, index); }
-  PathState path() const {
-    return {.ray = ray, .widening = widening, .beam = beam, .first = first};
-  }
-};
-
-// Finds the closest hits of the cameras' rays.
-void findFirstHits(const World& world, std::span<CameraSample> cameras, RayMask visible,
-                   const PixelSampler& sampler);
+class CameraSamples;
 
 // A sample of a pixel. A defect excludes it from the mean.
 struct Sample {
@@ -50,18 +28,9 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  // One sample, for which the sampler has been started. Called concurrently, with one context per
-  // thread.
-  virtual Sample sample(const CameraSample& camera, PathContext& context) const = 0;
-
-  // The same for several samples, of any pixels.
-  virtual void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
-                          std::span<Sample> samples) const {
-    for (size_t i = 0; i < cameras.size(); ++i) {
-      cameras[i].start(context.sampler);
-      samples[i] = sample(cameras[i], context);
-    }
-  }
+  // One sample of each camera ray, of any pixels. Called concurrently, with one context per thread.
+  virtual void sampleMany(const CameraSamples& cameras, PathContext& context,
+                          std::span<Sample> samples) const = 0;
 
   // The number of samples that sampleMany() takes at most.
   virtual size_t batch() const;
@@ -76,16 +45,23 @@ class Integrator {
   virtual RayMask visible() const { return kAllInstances; }
 };
 
+// Integrators that estimate one sample at a time.
+class SingleIntegrator : public Integrator {
+ public:
+  void sampleMany(const CameraSamples& cameras, PathContext& context,
+                  std::span<Sample> samples) const final;
+
+ protected:
+  // The sampler has been started for the sample.
+  virtual Sample sample(const CameraSample& camera, PathContext& context) const = 0;
+};
+
 // Path tracing of all instances.
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const PathTracer& tracer) : tracer_(tracer) {}
 
-  Sample sample(const CameraSample& camera, PathContext& context) const override {
-    return context.clamp(tracer_.radiance(camera.path(), camera.hit, context));
-  }
-
-  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+  void sampleMany(const CameraSamples& cameras, PathContext& context,
                   std::span<Sample> samples) const override;
 
   size_t batch() const override;
@@ -105,10 +81,10 @@ class PathBatch {
 
   // Traces the paths of camera rays, in lanes where that is possible (wide_paths.h). Returns their
   // radiances, in memory of this thread: valid until its next call.
-  static std::span<const Rgb> traced(std::span<const CameraSample> cameras,
-                                     const PathTracer& tracer, PathContext& context);
+  static std::span<const Rgb> traced(const CameraSamples& cameras, const PathTracer& tracer,
+                                     PathContext& context);
 
-  // The path of a camera ray, which must outlive the tracing.
+  // The path of a camera ray.
   void add(const CameraSample& camera) { add(camera, camera.path(), camera.hit); }
   // The same from a later vertex on. `hit`: of the state's ray.
   void add(const CameraSample& camera, const PathState& state, const std::optional<Hit>& hit);
@@ -132,6 +108,10 @@ class PathBatch {
     std::span<const T> all() const { return std::span(items).first(size); }
   };
   using Indices = List<uint32_t>;  // of paths
+  struct Camera {
+    PixelSampler::Sample numbers;
+    std::span<Rgb> layers;
+  };
 
   void grow();
 
@@ -149,7 +129,7 @@ class PathBatch {
 
   size_t count_ = 0;
   std::vector<PathState> paths_;
-  std::vector<const CameraSample*> cameras_;
+  std::vector<Camera> cameras_;
   std::vector<std::optional<Hit>> hits_;
   std::vector<DeferredLight> lights_;
   Indices active_, shaded_;

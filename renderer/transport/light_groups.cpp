@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lighting/suns.h"
+#include "transport/camera_samples.h"
 
 namespace chromeball {
 namespace {
@@ -78,13 +79,7 @@ void GroupSums::addBackground(const LightSource& light, std::optional<size_t> so
       [&](std::span<Rgb> radiances) { light.splitBackground(origin, wi, radiances); });
 }
 
-Sample GroupIntegrator::sample(const CameraSample& camera, PathContext& context) const {
-  Sample found;
-  sampleMany({&camera, 1}, context, {&found, 1});
-  return found;
-}
-
-void GroupIntegrator::sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+void GroupIntegrator::sampleMany(const CameraSamples& cameras, PathContext& context,
                                  std::span<Sample> samples) const {
   GroupSums sums(groups_, context.lightRadiances);
   context.groups = &sums;

@@ -108,8 +108,7 @@ class GroupIntegrator : public Integrator {
   GroupIntegrator(const PathTracer& tracer, const LightGroups& groups)
       : tracer_(tracer), groups_(groups) {}
 
-  Sample sample(const CameraSample& camera, PathContext& context) const override;
-  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+  void sampleMany(const CameraSamples& cameras, PathContext& context,
                   std::span<Sample> samples) const override;
   std::vector<Accumulation> layers() const override {
     return std::vector<Accumulation>(groups_.names().size(), Accumulation::Sum);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
+#include "transport/camera_samples.h"
 #include "transport/first_surface.h"
 
 namespace chromeball {
@@ -38,12 +40,18 @@ Float8 widenedBy(Float8 widening, Float8 pdf) {
   return pdf > 0 ? widening * spread : Float8{};
 }
 
+// Calls visit(lane) for the bits that are set.
+template <class Visit>
+void forBits(unsigned bits, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(unsigned(std::countr_zero(bits)));
+}
+
 Int8 isBlack(const Vector& c) { return (c.x == 0) & (c.y == 0) & (c.z == 0); }
 
 }  // namespace
 
 struct WidePaths::Task {
-  std::span<const CameraSample> cameras;
+  const CameraSamples& cameras;
   const PathTracer& tracer;
   PathContext& context;
   PathBatch& rest;
@@ -64,22 +72,37 @@ bool WidePaths::serves(const PathTracer& tracer, const PathContext& context) {
          !context.groups && !context.log;
 }
 
-void WidePaths::Paths::copy(const Paths& from, size_t i, size_t to) {
-  if (this == &from && i == to) return;
-  const auto copy3 = [&](LaneArrays3& v, const LaneArrays3& other) {
-    v.x[to] = other.x[i], v.y[to] = other.y[i], v.z[to] = other.z[i];
+void WidePaths::Paths::add(const Paths& from, size_t i, const LanePacking& packing) {
+  const auto copy = [&](auto& to, const auto& array) {
+    packing.store(&to[size], loadLanes(&array[i]));
+  };
+  const auto copy3 = [&](LaneArrays3& to, const LaneArrays3& arrays) {
+    to.store(size, arrays.load(i), packing);
   };
   copy3(rays.origin, from.rays.origin), copy3(rays.direction, from.rays.direction);
   copy3(throughput, from.throughput);
-  pdf[to] = from.pdf[i], length[to] = from.length[i];
-  id[to] = from.id[i], scattered[to] = from.scattered[i];
-  widening[to] = from.widening[i], minAlpha[to] = from.minAlpha[i];
-  hits.instance[to] = from.hits.instance[i], hits.triangle[to] = from.hits.triangle[i];
-  hits.u[to] = from.hits.u[i], hits.v[to] = from.hits.v[i];
-  hits.distance[to] = from.hits.distance[i];
-  if (!isRecorded) return;
-  copy3(throughputBefore, from.throughputBefore);
-  copy3(position, from.position), copy3(normal, from.normal);
+  copy(pdf, from.pdf), copy(length, from.length);
+  copy(id, from.id), copy(scattered, from.scattered);
+  copy(widening, from.widening), copy(minAlpha, from.minAlpha);
+  copy(hits.instance, from.hits.instance), copy(hits.triangle, from.hits.triangle);
+  copy(hits.u, from.hits.u), copy(hits.v, from.hits.v), copy(hits.distance, from.hits.distance);
+  if (isRecorded) {
+    copy3(throughputBefore, from.throughputBefore);
+    copy3(position, from.position), copy3(normal, from.normal);
+  }
+  size += packing.count();
+}
+
+template <class IsGone>
+void WidePaths::Paths::removeIf(const IsGone& isGone) {
+  const size_t count = std::exchange(size, 0);
+  for (size_t i = 0; i < count; i += kWidth) {
+    const unsigned here = bitsOf(firstLanes(count - i)), gone = isGone(i, here);
+    if (gone == 0 && size == i)
+      size += size_t(std::popcount(here));
+    else
+      add(*this, i, LanePacking(here & ~gone));
+  }
 }
 
 void WidePaths::start(const Task& task) {
@@ -87,25 +110,21 @@ void WidePaths::start(const Task& task) {
   left_.clear();
   for (Paths* const paths : {paths_, next_, &escaped_})
     paths->isRecorded = task.context.records != nullptr;
-  paths_->size = task.cameras.size();
-  for (size_t i = 0; i < paths_->size; ++i) {
-    const CameraSample& camera = task.cameras[i];
-    task.radiances[i] = Rgb(0);
-    samples_[i] = task.context.sampler.sampleAt(*camera.pixel, camera.index);
-    paths_->id[i] = int32_t(i);
-    paths_->rays.origin.set(i, camera.ray.origin);
-    paths_->rays.direction.set(i, camera.ray.direction);
-    paths_->throughput.set(i, Rgb(1));
-    paths_->pdf[i] = paths_->length[i] = 0;
-    paths_->scattered[i] = 0;
-    paths_->widening[i] = camera.widening, paths_->minAlpha[i] = 0;
-    paths_->hits.instance[i] = HitArrays::kNone;
-    if (camera.hit) paths_->hits.set(i, *camera.hit);
-  }
+  Paths& paths = *paths_;
+  paths.size = task.cameras.size();
+  std::fill_n(task.radiances.begin(), paths.size, Rgb(0));
+  const CameraSamples::Group& cameras = task.cameras.group(0);
+  paths.rays = cameras.rays, paths.hits = cameras.hits, paths.widening = cameras.widening;
+  for (LaneArray<float>* const one :
+       {&paths.throughput.x, &paths.throughput.y, &paths.throughput.z})
+    one->fill(1);
+  for (LaneArray<float>* const zero : {&paths.pdf, &paths.length, &paths.minAlpha}) zero->fill(0);
+  paths.scattered.fill(0);
+  std::iota(paths.id.begin(), paths.id.end(), 0);
 }
 
-void WidePaths::follow(std::span<const CameraSample> cameras, const PathTracer& tracer,
-                       PathContext& context, PathBatch& rest, std::span<Rgb> radiances) {
+void WidePaths::follow(const CameraSamples& cameras, const PathTracer& tracer, PathContext& context,
+                       PathBatch& rest, std::span<Rgb> radiances) {
   const Task task{cameras, tracer, context, rest, radiances};
   start(task);
   for (;;) {
@@ -129,37 +148,40 @@ void WidePaths::follow(std::span<const CameraSample> cameras, const PathTracer& 
   }
 }
 
-void WidePaths::setKeys() {
+void WidePaths::setKeys(const Task& task) {
   for (size_t k = 0; k < paths_->size; ++k)
-    keys_[k] = PixelSampler::vertexKey(samples_[size_t(paths_->id[k])], depth_);
+    keys_[k] = PixelSampler::vertexKey(task.cameras.numbers(size_t(paths_->id[k])), depth_);
 }
 
 void WidePaths::traceRays(const Task& task) {
-  setKeys();
+  setKeys(task);
   task.world().accel.intersect(paths_->rays, paths_->size, std::span(keys_).first(paths_->size),
                                Accel::Coherence::None, paths_->hits, task.settings().visible);
 }
 
 // As PathTracer::endsAtAnyHit().
 void WidePaths::traceLastRays(const Task& task) {
-  setKeys();
+  setKeys(task);
   const Accel& accel = task.world().accel;
   const RayMask visible = task.settings().visible;
   accel.transmittance(paths_->rays, std::span(transmittances_).first(paths_->size), visible);
-  size_t kept = 0;
-  for (size_t k = 0; k < paths_->size; ++k) {
-    int32_t& instance = paths_->hits.instance[k];
-    instance = HitArrays::kNone;
-    const bool isMirrored = paths_->pdf[k] == 0;  // mirrors do not see all backs
-    if (isBlack(transmittances_[k])) {
-      if (!isFollowed(task, k) && !isMirrored) continue;
+  paths_->removeIf([&](size_t i, unsigned here) {
+    unsigned gone = 0;
+    forBits(here, [&](unsigned lane) {
+      const size_t k = i + lane;
+      paths_->hits.instance[k] = HitArrays::kNone;
+      if (!isBlack(transmittances_[k])) return;
+      const bool isMirrored = paths_->pdf[k] == 0;  // mirrors do not see all backs
+      if (!isFollowed(task, k) && !isMirrored) {
+        gone |= 1u << lane;
+        return;
+      }
       Hit hit;
       const Ray ray{paths_->rays.origin.at(k), paths_->rays.direction.at(k)};
       if (accel.intersect(ray, keys_[k], hit, visible)) paths_->hits.set(k, hit);
-    }
-    paths_->copy(*paths_, k, kept++);
-  }
-  paths_->size = kept;
+    });
+    return gone;
+  });
 }
 
 // Whether the light beyond the limit of depth is estimated by this path.
@@ -168,7 +190,7 @@ bool WidePaths::isFollowed(const Task& task, size_t path) const {
 }
 
 void WidePaths::endAtLimit(const Task& task) {
-  setKeys();
+  setKeys(task);
   for (size_t k = 0; k < paths_->size; ++k) {
     const PlainSurfaces::Part& part = partOf(task, k);
     const bool mayBeHidden = part.hidesBack && paths_->pdf[k] == 0;
@@ -183,22 +205,26 @@ const PlainSurfaces::Part& WidePaths::partOf(const Task& task, size_t path) cons
 
 // Paths whose first hit notes what is seen in smooth mirrors leave the lanes there.
 bool WidePaths::notesMirrored(const Task& task, size_t path) const {
-  return depth_ > 0 && paths_->pdf[path] == 0 && task.cameras[size_t(paths_->id[path])].first;
+  return depth_ > 0 && paths_->pdf[path] == 0 && task.cameras.first(size_t(paths_->id[path]));
 }
 
 void WidePaths::leaveLanes(const Task& task) {
-  size_t kept = 0;
-  for (size_t k = 0; k < paths_->size; ++k)
-    if (partOf(task, k).kind == PlainSurfaces::Kind::Other || notesMirrored(task, k))
-      handOver(task, k);
-    else
-      paths_->copy(*paths_, k, kept++);
-  paths_->size = kept;
+  paths_->removeIf([&](size_t i, unsigned here) {
+    unsigned gone = 0;
+    forBits(here, [&](unsigned lane) {
+      if (partOf(task, i + lane).kind != PlainSurfaces::Kind::Other &&
+          !notesMirrored(task, i + lane))
+        return;
+      handOver(task, i + lane);
+      gone |= 1u << lane;
+    });
+    return gone;
+  });
 }
 
 void WidePaths::handOver(const Task& task, size_t k) {
   const size_t id = size_t(paths_->id[k]);
-  const CameraSample& camera = task.cameras[id];
+  const CameraSample camera = task.cameras[id];
   PathState state = camera.path();
   state.ray.origin = paths_->rays.origin.at(k), state.ray.direction = paths_->rays.direction.at(k);
   state.radiance = task.radiances[id];
@@ -220,16 +246,18 @@ void WidePaths::handOver(const Task& task, size_t k) {
 }
 
 void WidePaths::endEscaped(const Task& task) {
-  size_t kept = 0;
   escaped_.size = 0;
-  for (size_t k = 0; k < paths_->size; ++k)
-    if (paths_->hits.instance[k] != HitArrays::kNone)
-      paths_->copy(*paths_, k, kept++);
-    else if (notesMirrored(task, k))
-      handOver(task, k);
-    else
-      escaped_.copy(*paths_, k, escaped_.size++);
-  paths_->size = kept;
+  paths_->removeIf([&](size_t i, unsigned here) {
+    const unsigned gone = here & bitsOf(loadLanes(&paths_->hits.instance[i]) == HitArrays::kNone);
+    unsigned escaped = gone;
+    forBits(gone, [&](unsigned lane) {
+      if (!notesMirrored(task, i + lane)) return;
+      handOver(task, i + lane);
+      escaped &= ~(1u << lane);
+    });
+    escaped_.add(*paths_, i, LanePacking(escaped));
+    return gone;
+  });
   const bool isSeen = depth_ == 0;
   if (escaped_.size == 0 || (isSeen && task.settings().hideProbe)) return;
   if (isSeen)
@@ -272,7 +300,7 @@ LightRecord WidePaths::recordOf(size_t k, const Rgb& found, float lightPdf) cons
 
 void WidePaths::fillVertices(const Task& task) {
   for (size_t k = 0; k < paths_->size; ++k) {
-    const Beam& beam = task.cameras[size_t(paths_->id[k])].beam;
+    const Beam& beam = task.cameras.pixel(size_t(paths_->id[k])).beam;
     crossSections_[k] = beam ? beam.crossSection(paths_->length[k] + paths_->hits.distance[k]) : 0;
   }
   vertices_.fill(task.world().scene, task.world().plain, paths_->rays, paths_->hits,
@@ -289,7 +317,7 @@ void WidePaths::fillVertices(const Task& task) {
 void WidePaths::noteFirst(const Task& task) {
   for (size_t k = 0; k < paths_->size; ++k) {
     const size_t id = size_t(paths_->id[k]);
-    FirstHit* const first = task.cameras[id].first;
+    FirstHit* const first = task.cameras.first(id);
     if (!first || vertices_.isHidden[k]) continue;
     if (depth_ > 0) {
       if (!first->direct) first->direct = task.radiances[id];
@@ -311,7 +339,7 @@ void WidePaths::drawNumbers(const Task& task) {
     for (size_t k = 0; k < kWidth; ++k) {
       begins[k] = rows[k].data();
       if (i + k >= paths_->size) continue;
-      sampler.vertexBits(samples_[size_t(paths_->id[i + k])], depth_,
+      sampler.vertexBits(task.cameras.numbers(size_t(paths_->id[i + k])), depth_,
                          reinterpret_cast<uint32_t*>(rows[k].data()));
     }
     const auto columns = L::columns(begins);
@@ -384,8 +412,8 @@ void WidePaths::scatterLanes(const Task& task, size_t i) {
 // As DirectLight::record().
 void WidePaths::recordSamples(size_t first, unsigned lit, const BsdfLanesValue& value,
                               const Vector& normal) {
-  for (; lit != 0; lit &= lit - 1) {
-    const size_t k = size_t(std::countr_zero(lit)), i = first + k;
+  forBits(lit, [&](unsigned k) {
+    const size_t i = first + k;
     const Rgb fCos(value.fCos.x[k], value.fCos.y[k], value.fCos.z[k]);
     const float pdf = lights_.pdf[i];
     shadows_.records.push_back({.position = vertices_.position.at(i),
@@ -395,7 +423,7 @@ void WidePaths::recordSamples(size_t first, unsigned lit, const BsdfLanesValue& 
                                 .density = pdf + value.pdf[k],
                                 .strategyPdf = pdf,
                                 .bsdfPdf = value.pdf[k]});
-  }
+  });
 }
 
 void WidePaths::traceShadowRays(const Task& task) {

@@ -27,7 +27,7 @@ class WidePaths {
   // Follows the paths of camera rays, up to kMaxPaths, to their ends, or until PathBatch must go
   // on; `rest` then has the paths left() of them. `radiances`: of the paths so far, in the order of
   // the cameras.
-  void follow(std::span<const CameraSample> cameras, const PathTracer& tracer, PathContext& context,
+  void follow(const CameraSamples& cameras, const PathTracer& tracer, PathContext& context,
               PathBatch& rest, std::span<Rgb> radiances);
   // The numbers of the paths in `rest`, in its order.
   std::span<const uint32_t> left() const { return left_; }
@@ -49,8 +49,13 @@ class WidePaths {
     LaneArrays3 position, normal, throughputBefore;
     size_t size = 0;
 
-    // Copies path `i` of `from` to place `to`.
-    void copy(const Paths& from, size_t i, size_t to);
+    // Appends the paths of `from` at [i, i + 8) that are packed. `from` may be this, if no path
+    // before them is still wanted where they go.
+    void add(const Paths& from, size_t i, const LanePacking& packing);
+    // Removes the paths of each eight whose bits isGone(first, here) returns; `here`: the bits of
+    // those that exist.
+    template <class IsGone>
+    void removeIf(const IsGone& isGone);
   };
   struct Task;
 
@@ -74,10 +79,9 @@ class WidePaths {
                      const Lanes3<Float8>& normal);
   LightRecord recordOf(size_t escaped, const Rgb& found, float lightPdf) const;
   void traceShadowRays(const Task& task);
-  void setKeys();
+  void setKeys(const Task& task);
 
   int depth_ = 0;
-  std::array<PixelSampler::Sample, kMaxPaths> samples_;  // by id
   std::array<Paths, 2> buffers_;
   Paths* paths_ = &buffers_[0];  // at this depth, and those that go on
   Paths* next_ = &buffers_[1];

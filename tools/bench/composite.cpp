@@ -20,23 +20,22 @@ void differential(benchmark::State& state, demo::Finish finish) {
   Rgb plainSum(0), withObjects(0);
   for (auto _ : state) {
     const double start = cpuSeconds();
-    plainSum = sumOverSamples(
-        camera, world.accel, [&](std::span<const CameraSample> cameras, PathContext& context) {
+    plainSum =
+        sumOverSamples(camera, world, [&](const CameraSamples& cameras, PathContext& context) {
           const std::span<const Rgb> radiances = PathBatch::traced(cameras, worlds.whole, context);
           Rgb sum(0);
           for (size_t i = 0; i < cameras.size(); ++i) sum += radiances[i];
           return sum;
         });
     const double middle = cpuSeconds();
-    withObjects = sumOverSamples(camera, world.accel,
-                                 [&](std::span<const CameraSample> cameras, PathContext& context) {
-                                   std::array<DifferentialSample, kTraced> found;
-                                   differentialRadiance(worlds, cameras, false, context, found);
-                                   Rgb sum(0);
-                                   for (size_t i = 0; i < cameras.size(); ++i)
-                                     sum += found[i].both + found[i].withObjects;
-                                   return sum;
-                                 });
+    withObjects =
+        sumOverSamples(camera, world, [&](const CameraSamples& cameras, PathContext& context) {
+          std::array<DifferentialSample, kTraced> found;
+          differentialRadiance(worlds, cameras, false, context, found);
+          Rgb sum(0);
+          for (size_t i = 0; i < cameras.size(); ++i) sum += found[i].both + found[i].withObjects;
+          return sum;
+        });
     plain += middle - start;
     both += cpuSeconds() - middle;
   }

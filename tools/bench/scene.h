@@ -15,6 +15,7 @@
 #include "probe/load.h"
 #include "probe/synth.h"
 #include "scene/gltf/load_gltf.h"
+#include "transport/camera_samples.h"
 #include "transport/integrator.h"
 
 namespace chromeball {
@@ -89,23 +90,22 @@ inline constexpr int kTraced = PathBatch::kMaxPaths;  // samples per pixel of th
 // Calls radiance(cameras, context) for the samples of every pixel, with their hits, on this thread;
 // `log` may be null.
 template <class Radiance>
-Rgb sumOverSamples(const Camera& camera, const Accel& accel, Radiance&& radiance,
+Rgb sumOverSamples(const Camera& camera, const World& world, Radiance&& radiance,
                    RayLog* log = nullptr) {
-  std::array<CameraSample, kTraced> cameras;
-  std::array<std::optional<Hit>, kTraced> hits;
-  const std::array<uint32_t, kTraced> keys{};
+  CameraPixel pixel;
+  CameraSamples cameras;
   return sumOverPixels(
       camera, kTraced,
       [&](std::span<const Ray> rays, PathContext& context) {
-        accel.intersect(rays, keys, Accel::Coherence::High, hits);
+        cameras.clear();
+        pixel.numbers = context.sampler.pixel();
         for (size_t i = 0; i < rays.size(); ++i) {
           if (log) log->rays.push_back({rays[i], false});
-          cameras[i] = {.pixel = &context.sampler.pixel(),
-                        .index = uint32_t(i),
-                        .ray = rays[i],
-                        .hit = hits[i]};
+          cameras.add(pixel, context.sampler, uint32_t(i), 0);
+          cameras.setRay(i, rays[i]);
         }
-        return radiance(std::span<const CameraSample>(cameras), context);
+        cameras.findHits(world, kAllInstances);
+        return radiance(cameras, context);
       },
       log);
 }
@@ -114,8 +114,8 @@ Rgb sumOverSamples(const Camera& camera, const Accel& accel, Radiance&& radiance
 inline Rgb traceImage(const BenchmarkScene& s, RayLog* log) {
   const PathTracer tracer = s.tracer();
   return sumOverSamples(
-      s.scene.cameras.front(), s.world.accel,
-      [&](std::span<const CameraSample> cameras, PathContext& context) {
+      s.scene.cameras.front(), s.world,
+      [&](const CameraSamples& cameras, PathContext& context) {
         const std::span<const Rgb> radiances = PathBatch::traced(cameras, tracer, context);
         Rgb sum(0);
         for (size_t i = 0; i < cameras.size(); ++i) sum += radiances[i];

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/parallel.h"
+#include "transport/camera_samples.h"
 
 namespace chromeball {
 namespace {
@@ -42,35 +43,29 @@ class BasisIntegrator : public Integrator {
 
   // Integrators with layers have a film with sums in double for each layer, which would be too
   // large; this writes to its own sums, only at the cameras' pixels.
-  Sample sample(const CameraSample& camera, PathContext& context) const override {
-    Sample found;
-    sampleMany({&camera, 1}, context, {&found, 1});
-    return found;
-  }
-
-  void sampleMany(std::span<const CameraSample> cameras, PathContext& context,
+  void sampleMany(const CameraSamples& cameras, PathContext& context,
                   std::span<Sample> samples) const override {
     struct Scratch {  // keeps its capacity
       std::array<std::vector<DirectedLight>, PathBatch::kMaxPaths> directed;
       std::vector<Rgb> groups;
-      std::vector<CameraSample> cameras;
+      CameraSamples cameras;
     };
     thread_local Scratch found;
     const size_t count = groups_.names().size();
     found.groups.assign(cameras.size() * count, Rgb(0));
-    found.cameras.assign(cameras.begin(), cameras.end());
-    for (size_t i = 0; i < cameras.size(); ++i) {
-      found.directed[i].clear();
-      found.cameras[i].layers = std::span(found.groups).subspan(i * count, count);
-    }
+    found.cameras = cameras;
+    found.cameras.writeLayers(found.groups, count);
+    for (size_t i = 0; i < cameras.size(); ++i) found.directed[i].clear();
     GroupSums sums(groups_, context.lightRadiances, found.directed);
     context.groups = &sums;
     const std::span<const Rgb> radiances = PathBatch::traced(found.cameras, tracer_, context);
     context.groups = nullptr;
     for (size_t i = 0; i < cameras.size(); ++i) {
       samples[i] = radiances[i];
+      const CameraPixel& pixel = cameras.pixel(i);
       if (!samples[i].defect)
-        add(cameras[i].x, cameras[i].y - top_, found.directed[i], found.cameras[i].layers);
+        add(pixel.x, pixel.y - top_, found.directed[i],
+            std::span(found.groups).subspan(i * count, count));
     }
   }
 
