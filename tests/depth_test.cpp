@@ -99,8 +99,10 @@ TEST(Depth, TheCutFractionIsEstimatedWithoutBias) {
   Material wall = lambert(Rgb(float(kAlbedo)));
   wall.emission = Rgb(1);
   addSphere(scene, addMaterial(scene, wall), vec3(0), -5, 16, false);
-  for (const int depth : {1, 3}) {
-    const RenderResult r = renderTop(scene, smallRender(16, 16, 512, depth));
+  for (const auto& [depth, transmissions] : {std::pair(1, 64), std::pair(3, 64), std::pair(3, 0)}) {
+    RenderSettings settings = smallRender(16, 16, 512, depth);
+    settings.maxTransmissionDepth = transmissions;  // reached by no path: there is no glass
+    const RenderResult r = renderTop(scene, settings);
     const DepthCut& cut = r.depthCut;
     const double expected = std::pow(kAlbedo, depth + 1);
     EXPECT_NEAR(cut.fraction(DepthLimit::Depth) / expected, 1, 0.12) << depth;

@@ -157,6 +157,16 @@ TEST(ExrFiles, LayersWithoutLightAreNeverLight) {
     return Names{layer + ".B", layer + ".G", layer + ".R"};
   };
   for (const char* layer : {"ViewLayer.Denoising Albedo",
+                            "View Layer.Denoising Variance",
+                            "View Layer.Denoising Image Variance",
+                            "ViewLayer.Denoising Shadowing",
+                            "beauty_variance",
+                            "RGB_var",
+                            "beauty_stddev",
+                            "mse",
+                            "samplecount",
+                            "weights",
+                            "heat",
                             "ViewLayer.CryptoObject00",
                             "crypto_material01",
                             "DiffCol",
@@ -190,9 +200,10 @@ TEST(ExrFiles, LayersWithoutLightAreNeverLight) {
        {"depth.Y", "ViewLayer.Depth.V", "distance", "object id", "ZBack", "mask", "clipped", "N.X",
         "ViewLayer.Mist.Z", "Debug Sample Count", "samples", "View.IndexOB.X", "denoise_error.Y"})
     EXPECT_FALSE(isColor({channel})) << channel;
-  for (const char* layer : {"diffuse", "View.DiffDir", "light.key", "A.Emit", "Depth.Combined",
-                            "noisy", "left", "color", "light_color", "no_fog", "emission_color",
-                            "P3.spec", "panorama", "image", "candid"})
+  for (const char* layer :
+       {"diffuse", "View.DiffDir", "light.key", "A.Emit", "Depth.Combined", "noisy",
+        "View Layer.Noisy Image", "heat lamp", "noise_free", "left", "color", "light_color",
+        "no_fog", "emission_color", "P3.spec", "panorama", "image", "candid"})
     EXPECT_TRUE(isColor(ofLayer(layer))) << layer;
   for (const char* channel : {"luminance", "light.Y", "grey", "L", "Y"})
     EXPECT_TRUE(isColor({channel})) << channel;

@@ -21,7 +21,7 @@ class Camera:
 
     def __init__(self, *, size: tuple[int, int] | None = None, **keys: Any) -> None:
         check_camera(keys, "Camera()")
-        self.keys = keys
+        self.keys = _values.copied(keys)
         #: Width and height in pixels that renders have where they are not told another; None: any.
         self.size = size
 

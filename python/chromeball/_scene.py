@@ -36,7 +36,7 @@ class Material:
         for name in _TEXTURES:
             if keywords.get(name) is not None:
                 keywords[name] = _arrays.texels(f"Material(): {name}", keywords[name])
-        self._keywords = {"metallic": 0.0, **keywords}
+        self._keywords = _values.copied({"metallic": 0.0, **keywords})
         Geometry().add_material(self._keywords)  # checks it
         self._made: MaterialBsdf | None = None
 
@@ -89,7 +89,7 @@ class Scene:
     def __init__(self, **keys: Any) -> None:
         check_scene(keys, "Scene()")
         lists = {name: _listed(keys.get(name)) for name in ("model", "light")}
-        self._keys: dict[str, Any] = {**keys, **lists}
+        self._keys: dict[str, Any] = _values.copied({**keys, **lists})
         self._geometry = Geometry()
         self._materials: dict[int, tuple[Material, int]] = {}  # by id(), with what keeps that its own
         self._meshes: list[int] = []  # the material of each
@@ -151,7 +151,8 @@ class Scene:
 
     def add_instance(self, mesh: int, transform: Any, *, material: Material | None = None, name: str = "mesh") -> None:
         """Shows a mesh, which add_mesh() was given, once more: with a transform [4,4] and perhaps another material."""
-        if not 0 <= mesh < len(self._meshes):
+        mesh = _values.whole("mesh", mesh, 0, 2**31 - 1)
+        if mesh >= len(self._meshes):
             raise InputError(f"add_instance(): there is no mesh {mesh} among {len(self._meshes)}")
         number = self._meshes[mesh] if material is None else self._material(material)
         to_world = _arrays.matrix("transform", transform)
@@ -167,7 +168,7 @@ class Scene:
 
     def _add(self, section: str, entry: dict[str, Any], caller: str) -> None:
         check_scene({section: [entry]}, caller)
-        self._keys[section] = [*self._keys[section], entry]
+        self._keys[section] = [*self._keys[section], _values.copied(entry)]
 
 
 def _listed(value: Any) -> list[Any]:

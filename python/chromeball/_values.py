@@ -26,6 +26,21 @@ def path(name: str, value: Any) -> str:
     return text(name, os.fspath(value) if isinstance(value, os.PathLike) else value)
 
 
+def copied(value: Any) -> Any:
+    """The value without references to the caller's lists, dicts and arrays, which may change later."""
+    if isinstance(value, dict):
+        return {key: copied(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [copied(item) for item in value]
+    if type(value) is tuple:
+        return tuple(copied(item) for item in value)
+    if getattr(value, "ndim", 0) and hasattr(value, "__array__"):
+        import numpy as np
+
+        return np.array(value)
+    return value
+
+
 def whole(name: str, value: Any, low: int, high: int) -> int:
     """A whole number of any type, numpy's also."""
     try:

@@ -35,6 +35,38 @@ def test_every_kind_of_array_gives_the_same_image(camera, small):
         assert np.array_equal(rendered(lambda s: s.add_mesh(positions, triangles), camera, small), expected)
 
 
+def test_arrays_of_lamps_cameras_and_materials_are_copied():
+    place = np.array([1.0, 2.0, 3.0])
+    scene = cb.Scene()
+    scene.add_light("point", position=place, intensity=1)
+    entry = {"type": "point", "position": place, "intensity": 1}
+    listed = cb.Scene(light=[entry])
+    seen = cb.Camera.look_at(place, [0, 0, 0])
+    red = cb.Material(base_color=place / 3)
+    color = np.array([0.5, 0.25, 0.125])
+    other = cb.Material(base_color=color)
+    up = np.array([[0.0, 0.0, 1.0]])
+    before = other.eval(up, up)
+    place[:] = 7
+    color[:] = 1
+    entry["intensity"] = 5
+    for lamp in scene._keys["light"] + listed._keys["light"]:
+        assert list(lamp["position"]) == [1, 2, 3] and lamp["intensity"] == 1
+    assert list(seen.keys["position"]) == [1, 2, 3]
+    assert np.allclose(red._keywords["base_color"], [1 / 3, 2 / 3, 1])
+    assert np.array_equal(cb.Material(base_color=[0.5, 0.25, 0.125]).eval(up, up), before)
+    assert np.array_equal(other.eval(up, up), before)
+
+
+def test_instances_of_what_is_no_mesh_are_refused():
+    scene = cb.Scene()
+    scene.add_mesh(SQUARE, TWO)
+    scene.add_instance(np.int64(0), np.eye(4))
+    for mesh in [0.0, "0", None, -1, 1]:
+        with pytest.raises(cb.InputError, match="mesh"):
+            scene.add_instance(mesh, np.eye(4))
+
+
 def test_arrays_are_copied(camera, small):
     positions = SQUARE.copy()
     scene = cb.Scene()

@@ -31,7 +31,8 @@ std::vector<Setting> commandRows() {
           {.option = "two-pass",
            .type = Flag,
            .help = "Renders a composite as the difference of two renders: slow, the reference for "
-                   "the single pass."},
+                   "the single pass. Its noise makes mode `ratio` brighter: take samples until "
+                   "that is low."},
           {.option = "crop",
            .argument = "X,Y,W,H",
            .type = Name,

@@ -34,15 +34,18 @@ bool mayBeSpecular(const Material& m) {
 // The limit at which the path loses what its next surface scatters, or some of it.
 std::optional<DepthLimit> PathTracer::reachedLimit(const PathState& state, const Hit& hit) const {
   if (state.bounces() == settings_.maxDepth) return DepthLimit::Depth;
+  const Scene& scene = world_.scene;
+  const auto material = [&]() -> const Material& {
+    return scene.materials[size_t(scene.instances[hit.instance].material)];
+  };
   if (limitsKinds_) [[unlikely]] {
-    const Scene& scene = world_.scene;
-    const Material& material = scene.materials[size_t(scene.instances[hit.instance].material)];
-    if (state.diffuse == settings_.maxDiffuseDepth && mayBeDiffuse(material))
+    if (state.diffuse == settings_.maxDiffuseDepth && mayBeDiffuse(material()))
       return DepthLimit::Diffuse;
-    if (state.specular == settings_.maxSpecularDepth && mayBeSpecular(material))
+    if (state.specular == settings_.maxSpecularDepth && mayBeSpecular(material()))
       return DepthLimit::Specular;
   }
-  if (state.transmissions == settings_.maxTransmissionDepth) return DepthLimit::Transmission;
+  if (state.transmissions == settings_.maxTransmissionDepth && material().isBody())
+    return DepthLimit::Transmission;
   return {};
 }
 

@@ -110,6 +110,8 @@ class PlaceCollector {
   PlaceCollector found(world_.scene, state);
   found.add(hit);
   const bool isMet = found.count() == 1;
+  if (world_.loneTriangles.contains(hit.instance, hit.triangle))
+    return isMet ? std::optional(hit) : std::nullopt;
   float rayOffset = surface.rayOffset;
   world_.accel.forEachCoincident(state.ray, hit, surface, context.sampler.sampleKey(),
                                  settings_.visible, [&](const Hit& other) {

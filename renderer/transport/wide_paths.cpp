@@ -67,9 +67,8 @@ bool WidePaths::serves(const PathTracer& tracer, const PathContext& context) {
   const PathSettings& s = tracer.settings();
   return world.plain.any() && !world.scene.moves && world.sources.all.empty() &&
          tracer.mirrorAlpha() == 0 && tracer.lighting().sampleMany({}, {}) && s.maxDepth > 0 &&
-         s.maxTransmissionDepth > 0 && !s.limitsKinds() && s.compared == s.visible &&
-         (!s.guide || s.guide->empty()) && (!s.caustics || s.caustics->empty()) &&
-         !context.groups && !context.log;
+         !s.limitsKinds() && s.compared == s.visible && (!s.guide || s.guide->empty()) &&
+         (!s.caustics || s.caustics->empty()) && !context.groups && !context.log;
 }
 
 void WidePaths::Paths::add(const Paths& from, size_t i, const LanePacking& packing) {

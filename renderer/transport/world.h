@@ -11,6 +11,7 @@
 #include "scene/scene.h"
 #include "shading/bsdf_tables.h"
 #include "trace/accel.h"
+#include "trace/lone_triangles.h"
 #include "trace/shared_places.h"
 #include "transport/plain_surfaces.h"
 
@@ -31,6 +32,7 @@ struct World {
         accel(described, masks, std::move(earlier)),
         sources(described),
         sharedPlaces(accel),
+        loneTriangles(accel),
         bsdfTables(tables),
         plain(described),
         hasBodies(std::ranges::any_of(described.materials, &Material::isBody)) {}
@@ -39,6 +41,7 @@ struct World {
   const Accel accel;
   const SceneSources sources;
   const SharedPlaces sharedPlaces;
+  const LoneTriangles loneTriangles;
   const BsdfTables bsdfTables;  // the tables that its materials need
   const PlainSurfaces plain;
   const bool hasBodies;  // of glass

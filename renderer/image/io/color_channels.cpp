@@ -50,17 +50,19 @@ enum class Content { Light, Surface, Data };  // Surface: the colour of a materi
 // The content, judged by the layer names of this program, Blender, Arnold, V-Ray, Houdini,
 // Cryptomatte and others.
 Content contentOf(std::string_view segment) {
-  constexpr std::array kDataSegments = {"node",    "clipped",  "material", "ratio",
-                                        "samples", "variance", "invalid",  "zback"};
+  constexpr std::array kDataSegments = {"node",    "clipped", "material", "ratio", "samples",
+                                        "invalid", "zback",   "time",     "heat",  "noise"};
   constexpr std::array kSurfaceSegments = {"diffcol", "glosscol", "transcol", "subsurfacecol",
                                            "reflectance"};
   constexpr std::array kDataWords = {
-      "alpha",    "ao",        "occlusion", "mist",     "normal",   "normals",     "position",
-      "pref",     "velocity",  "motion",    "vector",   "vectors",  "tangent",     "uv",
-      "shadow",   "id",        "ids",       "index",    "mask",     "masks",       "matte",
-      "mattes",   "count",     "error",     "distance", "coverage", "opacity",     "roughness",
-      "metallic", "metalness", "disparity", "facing",   "st",       "motionvector"};
-  constexpr std::array kDataPartsOfWords = {"depth", "crypto"};
+      "alpha",     "ao",        "occlusion", "mist",     "normal",   "normals",      "position",
+      "pref",      "velocity",  "motion",    "vector",   "vectors",  "tangent",      "uv",
+      "shadow",    "id",        "ids",       "index",    "mask",     "masks",        "matte",
+      "mattes",    "count",     "error",     "distance", "coverage", "opacity",      "roughness",
+      "metallic",  "metalness", "disparity", "facing",   "st",       "motionvector", "var",
+      "std",       "deviation", "sigma",     "mse",      "rmse",     "weight",       "weights",
+      "shadowing", "heatmap",   "confidence"};
+  constexpr std::array kDataPartsOfWords = {"depth", "crypto", "variance", "stddev", "samplecount"};
   // V-Ray's filters are factors of its raw light.
   constexpr std::array kSurfaceWords = {"basecolor", "filter", "wire"};
   constexpr std::array kSurfacePartsOfWords = {"albedo"};

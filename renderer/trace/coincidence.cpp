@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/coincidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/surface.h"
+
+namespace chromeball {
+namespace {
+
+using glm::dvec3;
+using Points = std::array<dvec3, 3>;
+
+// A triangle with corners cut off by up to five planes.
+class ClippedTriangle {
+ public:
+  explicit ClippedTriangle(const Points& corners) : count_(3) {
+    std::ranges::copy(corners, points_.begin());
+  }
+
+  // Keeps the part where height(point) > 0, linear in the point (Sutherland and Hodgman). Returns
+  // false if nothing is left.
+  template <class Height>
+  bool clip(const Height& height) {
+    const ClippedTriangle before = *this;
+    count_ = 0;
+    for (size_t i = 0; i < before.count_; ++i) {
+      const dvec3 &from = before.points_[i], &to = before.points_[(i + 1) % before.count_];
+      const double start = height(from), end = height(to);
+      if (start > 0) points_[count_++] = from;
+      if ((start > 0) != (end > 0)) points_[count_++] = from + start / (start - end) * (to - from);
+    }
+    return count_ > 0;
+  }
+
+  double area() const {
+    dvec3 sum(0);
+    for (size_t i = 2; i < count_; ++i)
+      sum += glm::cross(points_[i - 1] - points_[0], points_[i] - points_[0]);
+    return 0.5 * glm::length(sum);
+  }
+  // The distance from one corner to the farthest.
+  double length() const {
+    double longest = 0;
+    for (size_t i = 1; i < count_; ++i)
+      longest = std::max(longest, glm::length(points_[i] - points_[0]));
+    return longest;
+  }
+
+ private:
+  std::array<dvec3, 16> points_;  // each plane adds at most one, rounding perhaps another
+  size_t count_;
+};
+
+// An offset that is at least rayOffset() for any normal.
+double largestOffset(const Coincidence::Corners& corners) {
+  return double(rayOffset(corners[0], corners[1], corners[2], vec3(1)));
+}
+
+Points pointsOf(const Coincidence::Corners& corners) {
+  return {dvec3(corners[0]), dvec3(corners[1]), dvec3(corners[2])};
+}
+
+template <class Condition>
+bool holdsForAll(const Points& points, const Condition& condition) {
+  return condition(points[0]) && condition(points[1]) && condition(points[2]);
+}
+
+}  // namespace
+
+Coincidence::Coincidence(const Corners& corners)
+    : centre_((corners[0] + corners[1] + corners[2]) / 3.0f),
+      offset_(largestOffset(corners)),
+      corners_(pointsOf(corners)) {
+  for (const vec3& corner : corners) radius_ = std::max(radius_, glm::length(corner - centre_));
+  normal_ = glm::normalize(glm::cross(corners_[1] - corners_[0], corners_[2] - corners_[0]));
+  for (size_t i = 0; i < 3; ++i)
+    inwards_[i] = glm::normalize(glm::cross(normal_, corners_[(i + 1) % 3] - corners_[i]));
+}
+
+bool Coincidence::overlaps(const Corners& other) const {
+  constexpr double kNarrow = 8;  // in offsets
+  const Points points = pointsOf(other);
+  for (size_t i = 0; i < 3; ++i)  // neighbours, most of all
+    if (holdsForAll(points, [&](const dvec3& p) { return inside(p, i) < offset_; })) return false;
+  const double offset = std::max(offset_, largestOffset(other));
+  const auto height = [&](const dvec3& p) { return glm::dot(p - corners_[0], normal_); };
+  if (holdsForAll(points, [&](const dvec3& p) { return height(p) > offset; }) ||
+      holdsForAll(points, [&](const dvec3& p) { return height(p) < -offset; }))
+    return false;
+  ClippedTriangle part(points);
+  for (size_t i = 0; i < 3; ++i)
+    if (!part.clip([&](const dvec3& p) { return inside(p, i); })) return false;
+  for (const double side : {-1.0, 1.0})
+    if (!part.clip([&](const dvec3& p) { return offset - side * height(p); })) return false;
+  return part.area() > kNarrow * offset * part.length();
+}
+
+bool Coincidence::mayTouch(const Corners& other, bool isNeighbour) const {
+  const Points points = pointsOf(other);
+  const double offset = 2 * std::max(offset_, largestOffset(other));
+  const double margin = isNeighbour ? offset_ : -offset;  // of the edges, inwards
+  ClippedTriangle part(points);
+  for (size_t i = 0; i < 3; ++i)
+    if (!part.clip([&](const dvec3& p) { return inside(p, i) - margin; })) return false;
+  for (const double side : {-1.0, 1.0})
+    if (!part.clip(
+            [&](const dvec3& p) { return offset - side * glm::dot(p - corners_[0], normal_); }))
+      return false;
+  return true;
+}
+
+}  // namespace chromeball
