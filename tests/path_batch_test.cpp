@@ -7,6 +7,7 @@
 #include "lighting/probe_light.h"
 #include "paths.h"
 #include "probe/synth.h"
+#include "render/pixel_renderer.h"
 #include "scene/gltf/load_gltf.h"
 #include "small_scenes.h"
 #include "transport/trace_photons.h"
@@ -198,6 +199,22 @@ TEST(PathBatch, LastRaysFindWhatClosestHitsFind) {
                 fullTogether.depthCut.fraction(DepthLimit::Depth));
       EXPECT_EQ(single.film.mean().texels, renderedBy<OneAtATime>(full, depth).film.mean().texels);
     }
+}
+
+// A thread may come to a tile that needs no samples before any other.
+TEST(PathBatch, OfNoPaths) {
+  const NamedScene named = threeScenes()[0];
+  const World world(named.scene, {}, allTables());
+  const Probe probe(named.probe);
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+  const RenderSettings settings = smallRender(4, 3, 8, 2);
+  const PathIntegrator integrator(PathTracer(world, *lighting, settings.path()));
+  RenderResult result(settings, {});
+  const PixelRenderer pixels(integrator, world, cameraAbove(), settings, result);
+  PixelWorker worker = pixels.makeWorker();
+  pixels.render(worker, 1, 1, 8, 8, {}, 0);
+  pixels.finish(worker);
+  EXPECT_EQ(worker.context.counts.camera, 0u);
 }
 
 // A black probe has no light samples.

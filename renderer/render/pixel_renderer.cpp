@@ -167,6 +167,7 @@ float PixelRenderer::wideningOf(const SampleBlock& block, uint32_t index) const 
 void PixelRenderer::traceSamples(PixelWorker& worker) const {
   CameraSamples& cameras = worker.cameras;
   const size_t count = cameras.size();
+  if (count == 0) return;  // no pixel of a tile needs more samples, or no shard's
   const bool wantsFirst = !result_.aovs.empty() || !result_.features.empty();
   const auto firsts = std::span(worker.firsts).first(wantsFirst ? count : 0);
   const auto layers = std::span(worker.layers).first(count * layerCount_);
