@@ -10,7 +10,10 @@
 #include "render/pixel_renderer.h"
 #include "scene/gltf/load_gltf.h"
 #include "small_scenes.h"
+#include "transport/camera_samples.h"
 #include "transport/trace_photons.h"
+
+#include <fmt/format.h>
 
 namespace chromeball::path_batch_test {
 namespace {
@@ -199,6 +202,95 @@ TEST(PathBatch, LastRaysFindWhatClosestHitsFind) {
                 fullTogether.depthCut.fraction(DepthLimit::Depth));
       EXPECT_EQ(single.film.mean().texels, renderedBy<OneAtATime>(full, depth).film.mean().texels);
     }
+}
+
+// Lamps of all kinds, more than are sampled at later vertices; a lamp on a ceiling, whose place it
+// shares, and one that is seen through glass and in a mirror.
+NamedScene litScene() {
+  NamedScene named{"lamps of all kinds", {}, constantProbe({16, 8}, Rgb(0.05f))};
+  Scene& s = named.scene;
+  const int floor = addMaterial(s, lambert({0.7f, 0.6f, 0.5f}));
+  addQuad(s, floor, {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
+  addQuad(s, floor, {-1, 2, 1}, {0, 0, -2}, {2, 0, 0});
+  Material lamp = lambert(Rgb(0.3f));
+  lamp.emission = {3, 2, 1};
+  lamp.doubleSided = false;
+  const int panel = addMaterial(s, lamp);
+  addQuad(s, panel, {-0.4f, 2, 0.4f}, {0, 0, -0.8f}, {0.8f, 0, 0});
+  lamp.roughness = 0.3f, lamp.specular = 1;
+  addSphere(s, addMaterial(s, lamp), {0.9f, 0.4f, 0.4f}, 0.3f, 12);
+  Material glass, mirror;
+  glass.metallic = glass.roughness = mirror.roughness = 0;
+  glass.extended.emplace().transmission = 1;
+  glass.extended->thinWalled = false;
+  addSphere(s, addMaterial(s, glass), {0, 0.5f, 1}, 0.35f, 16);
+  addSphere(s, addMaterial(s, mirror), {-0.9f, 0.5f, 0}, 0.5f, 16);
+  for (int i = 0; i < 20; ++i)
+    s.lights.push_back({.kind = PunctualLight::Kind::Point,
+                        .intensity = Rgb(0.05f + 0.01f * float(i)),
+                        .position = {0.3f * float(i) - 3, 1.5f, -1}});
+  s.lights.push_back({.kind = PunctualLight::Kind::Spot,
+                      .intensity = Rgb(2),
+                      .position = {0, 1.9f, 1},
+                      .direction = {0, -1, 0}});
+  s.lights.push_back({.kind = PunctualLight::Kind::Directional,
+                      .intensity = {0.2f, 0.3f, 0.4f},
+                      .direction = glm::normalize(vec3(1, -2, -1))});
+  return named;
+}
+
+TEST(PathBatch, UnderTheScenesOwnLights) {
+  const NamedScene named = litScene();
+  for (const Mis mis : {Mis::Balance, Mis::Power, Mis::Off})
+    for (const int depth : {1, 2, 6}) {
+      RenderSettings settings = smallRender(40, 30, 37, depth);
+      settings.mis = mis;
+      SCOPED_TRACE(fmt::format("{} {}", int(mis), depth));
+      expectSame(named, cameraAbove(), "importance", settings);
+    }
+  RenderSettings layers = smallRender(40, 30, 16, 4);
+  layers.aovs = {Aov::Albedo, Aov::Depth, Aov::Normal};
+  layers.denoise = true;
+  expectSame(named, cameraAbove(), "importance", layers);
+  NamedScene dark = named;
+  dark.probe = constantProbe({8, 4}, Rgb(0));
+  expectSame(dark, cameraAbove(), "importance", smallRender(40, 30, 37, 4));
+}
+
+TEST(PathBatch, GuidesLearnTheSameUnderTheScenesOwnLights) {
+  const NamedScene named = litScene();
+  const World world(named.scene, {}, allTables());
+  const Probe probe(named.probe);
+  const auto lighting = makeStrategy("importance", probe, Mis::Balance, "test");
+  const PathTracer tracer(world, *lighting, smallRender(4, 4, 16, 4).path());
+  std::array<GuideRecords, 2> records;
+  const SobolTable table(64, dimension::tabulated(5), 0);
+  CameraPixel pixel;
+  CameraSamples cameras;
+  PathContext context{.sampler = PixelSampler(table, 0), .clamp = Clamp()};
+  context.sampler.set(pixel.numbers, 0, 0, 0);
+  for (uint32_t i = 0; i < 64; ++i) {
+    cameras.add(pixel, context.sampler, i, 0);
+    const vec3 origin(0, 1.6f, 3), target(0.03f * float(i) - 1, 0.3f, 0);
+    cameras.setRay(i, {origin, glm::normalize(target - origin)});
+  }
+  cameras.findHits(world, kAllInstances);
+  context.records = &records[0];
+  PathBatch::traced(cameras, tracer, context);
+  context.records = &records[1];
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const CameraSample camera = cameras[i];
+    camera.start(context.sampler);
+    tracer.radiance(camera.path(), camera.hit, context);
+  }
+  ASSERT_GT(records[1].lights.size(), 50u);
+  EXPECT_EQ(records[0].lights.size(), records[1].lights.size());
+  const auto sum = [](const GuideRecords& of) {
+    double total = 0;
+    for (const LightRecord& light : of.lights) total += light.integrand / light.density;
+    return total;
+  };
+  EXPECT_NEAR(sum(records[0]) / sum(records[1]), 1, 1e-4);
 }
 
 // A thread may come to a tile that needs no samples before any other.

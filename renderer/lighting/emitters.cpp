@@ -123,7 +123,8 @@ void Emitters::sample(const LightPoint& point, const PixelSampler& sampler,
   const float distance = glm::length(to);
   const vec3 wi = to / distance;
   // Plain BSDFs transmit no light: saves the surface of a sample that they would drop.
-  if (!(distance > 0) || !(glm::dot(wi, point.normal) > 0 || point.bsdf->isLayered())) return;
+  const bool isLayered = point.bsdf && point.bsdf->isLayered();
+  if (!(distance > 0) || !(glm::dot(wi, point.normal) > 0 || isLayered)) return;
   const Surface surface =
       surfaceAt(scene_, instance, emitter.triangle, emitter.barycentric, -wi, 0, point.time);
   const float cosine = glm::dot(surface.geometricNormal, -wi);

@@ -23,7 +23,7 @@ struct Surface;
 struct LightPoint {
   vec3 position;
   vec3 normal;             // shading normal, on the viewer's side
-  const Bsdf* bsdf;        // null in escaped()
+  const Bsdf* bsdf;        // null in escaped(), and of plain surfaces (transport/plain_surfaces.h)
   int depth;               // 0 at the first hit; a strategy may take fewer samples at later hits
   bool transmits = false;  // light from behind contributes too
   float time = 0;          // of the shutter (scene/motion.h)

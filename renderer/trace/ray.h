@@ -20,6 +20,11 @@ struct Ray {
   vec3 direction;  // unit
   float tMax = INFINITY;
   float time = 0;  // at which it sees the scene (scene/motion.h)
+
+  void endAt(const vec3& position) {
+    tMax = glm::length(position - origin);
+    direction = (position - origin) / tMax;
+  }
 };
 
 struct Hit {

@@ -21,7 +21,13 @@ BsdfValue narrowLobes(const Bsdf& bsdf, const vec3& wi) {
 Rgb DirectLight::visibility(const Ray& ray, const Media& media, RayMask mask, uint32_t key,
                             const LightEnd& end) const {
   if (!exists(end, mask)) return Rgb(0);
-  const Rgb passed = world_.accel.transmittance(ray, mask, media.attenuation(), media.bodies());
+  return throughEnd(world_.accel.transmittance(ray, mask, media.attenuation(), media.bodies()), ray,
+                    media, mask, key, end);
+}
+
+Rgb DirectLight::throughEnd(const Rgb& passed, const Ray& ray, const Media& media, RayMask mask,
+                            uint32_t key, const LightEnd& end) const {
+  if (!exists(end, mask)) return Rgb(0);
   if (end.instance == LightEnd::kNone || isBlack(passed) ||
       !world_.sharedPlaces.contains(end.instance, end.triangle))
     return passed;
@@ -234,10 +240,7 @@ Rgb DirectLight::ofScene(size_t source, const Vertex& vertex, PathContext& conte
     if (isBlack(broad.fCos) && isBlack(narrow.fCos)) continue;
     // The end point is offset too, so that neither surface shadows itself.
     Ray ray = rayFrom(vertex.surface, light.wi, light.distance);
-    if (isSurface) {
-      ray.tMax = glm::length(light.end.position - ray.origin);
-      ray.direction = (light.end.position - ray.origin) / ray.tMax;
-    }
+    if (isSurface) ray.endAt(light.end.position);
     const Rgb passed = transmittance(vertex, ray, context, light.end);
     const Rgb scattered = (weighted(light, broad) + weighted(light, narrow)) * passed;
     sum += scattered * light.irradiance;

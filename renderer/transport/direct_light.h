@@ -95,6 +95,10 @@ class DirectLight {
   void addToGroups(const DeferredLight& light, const Rgb& passed, PathContext& context) const;
   // Light from one of World::sources, which lights narrow lobes too.
   Rgb ofScene(size_t source, const Vertex& vertex, PathContext& context) const;
+  // The transmittance up to the light at the end of a shadow ray whose `passed` the acceleration
+  // structure found: others may share the light's place. `key`: PixelSampler::sampleKey().
+  Rgb throughEnd(const Rgb& passed, const Ray& ray, const Media& media, RayMask mask, uint32_t key,
+                 const LightEnd& end) const;
 
  private:
   // A light sample, and the strategy's pdf of its direction.

@@ -89,15 +89,20 @@ void PathState::leave(const Surface& surface, const vec3& wi) {
 
 Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
                               const Instance& instance) const {
+  return state.throughput * foundEmission(state.from, state.isDelta ? 0 : state.pdf,
+                                          state.ray.direction, surface, instance);
+}
+
+Rgb PathTracer::foundEmission(const LightPoint& from, float pdf, const vec3& direction,
+                              const Surface& surface, const Instance& instance) const {
   float weight = 1;
-  if (!surface.material->unlit && !state.isDelta) {
-    float pdf = 0;
+  if (!surface.material->unlit && pdf != 0) {
+    float lightPdf = 0;
     for (const auto& source : world_.sources.all)
-      pdf += source->pdfOfHit(state.from, surface, instance);
-    weight = bsdfSampleWeight(settings_.mis, state.pdf, pdf);
+      lightPdf += source->pdfOfHit(from, surface, instance);
+    weight = bsdfSampleWeight(settings_.mis, pdf, lightPdf);
   }
-  return state.throughput * emittedRadiance(world_.scene, instance, surface, -state.ray.direction) *
-         weight;
+  return emittedRadiance(world_.scene, instance, surface, -direction) * weight;
 }
 
 // Each bounce that the guide does not choose has 1 / (1 - fraction) of the BSDF's weight: on long

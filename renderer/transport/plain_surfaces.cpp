@@ -4,7 +4,7 @@
 namespace chromeball {
 namespace {
 
-bool isPlain(const Material& m) { return !m.extended && !m.emits() && !m.backLetsLightThrough(); }
+bool isPlain(const Material& m) { return !m.extended && !m.unlit && !m.backLetsLightThrough(); }
 
 bool varies(const Material& m) {
   return m.projection || m.specularGlossiness || m.baseColorTexture || m.metallicRoughnessTexture ||
@@ -24,12 +24,14 @@ PlainSurfaces::PlainSurfaces(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
     const Material& material = scene.materials[size_t(instance.material)];
     const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
-    const Kind kind = instance.motion || !isPlain(material) ? Kind::Other
-                      : varies(material) || !mesh.colors.empty() || instance.toWorld
-                          ? Kind::Varying
-                          : Kind::Uniform;
-    parts_.push_back({kind, material.hidesBack(), instance.material, mesh.triangles.data(),
-                      mesh.positions.data(), mesh.normals.empty() ? nullptr : mesh.normals.data()});
+    const Kind kind =
+        instance.motion || !isPlain(material) ? Kind::Other
+        : varies(material) || material.emits() || !mesh.colors.empty() || instance.toWorld
+            ? Kind::Varying
+            : Kind::Uniform;
+    parts_.push_back({kind, material.hidesBack(), material.emits(), instance.material,
+                      mesh.triangles.data(), mesh.positions.data(),
+                      mesh.normals.empty() ? nullptr : mesh.normals.data()});
     any_ |= kind != Kind::Other;
   }
 }

@@ -10,19 +10,20 @@
 namespace chromeball {
 
 // Which instances of a scene are plain: they stand still and scatter light as Lambert's or the
-// metallic-roughness BSDF, and do nothing else.
+// metallic-roughness BSDF, and may emit, but do nothing else.
 class PlainSurfaces {
  public:
   enum class Kind : uint8_t {
     Other,
     Uniform,  // the material is the same at all points, and the mesh is in world space
-    Varying   // by textures or vertex colours, or with a transform
+    Varying   // by textures or vertex colours, with a transform, or it emits
   };
 
   // What shading reads of an instance.
   struct Part {
     Kind kind;
-    bool hidesBack;    // Material::hidesBack()
+    bool hidesBack;  // Material::hidesBack()
+    bool emits;
     int32_t material;  // index
     const Triangle* triangles;
     const vec3 *positions, *normals;  // normals: null if the mesh has none

@@ -115,7 +115,8 @@ void VertexArrays::fill(const Scene& scene, const PlainSurfaces& plain, const Ra
   for (size_t k = 0; k < count; ++k) {
     if (!isSingle_[k]) [[likely]]
       continue;
-    const Surface surface =
+    Surface& surface = surfaces_[k];
+    surface =
         surfaceAt(scene, scene.instances[size_t(hits.instance[k])], uint32_t(hits.triangle[k]),
                   {hits.u[k], hits.v[k]}, -rays.direction.at(k), crossSections[k]);
     set(k, surface);

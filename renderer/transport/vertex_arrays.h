@@ -29,6 +29,13 @@ class VertexArrays {
     return {baseColor.load(i), loadLanes(&metallic[i]), loadLanes(&roughness[i]),
             dielectricF0.load(i), loadLanes(&dielectricF90[i])};
   }
+  // Of a vertex of a part that emits.
+  const Surface& surface(size_t i) const { return surfaces_[i]; }
+  Ray rayFrom(size_t i, const vec3& direction, float tMax) const {
+    const vec3 n = geometricNormal.at(i);
+    const float offset = glm::dot(n, direction) < 0 ? -rayOffset[i] : rayOffset[i];
+    return {position.at(i) + offset * n, direction, tMax, 0};
+  }
   // As Surface::rayOrigin().
   Lanes3<Float8> rayOrigin(size_t i, const Lanes3<Float8>& direction) const {
     const Lanes3<Float8> n = geometricNormal.load(i);
@@ -45,7 +52,8 @@ class VertexArrays {
 
   std::array<LaneArrays3, 3> corners_, normals_;  // of the triangles
   alignas(64) LaneArray<int32_t> hidesBack_;
-  alignas(64) LaneArray<int32_t> isSingle_;  // not 0: by surfaceAt() and materialAt()
+  alignas(64) LaneArray<int32_t> isSingle_;      // not 0: by surfaceAt() and materialAt()
+  std::array<Surface, kMostInArrays> surfaces_;  // of these
 };
 
 }  // namespace chromeball

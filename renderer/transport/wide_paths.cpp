@@ -2,11 +2,11 @@
 #include "transport/wide_paths.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 
 #include "transport/camera_samples.h"
 #include "transport/first_surface.h"
+#include "transport/path_lanes.h"
 
 namespace chromeball {
 namespace {
@@ -21,32 +21,11 @@ Float8 unitsOf(const LaneArray<uint32_t>& bits, size_t i) {
   return L::toFloat(Int8(_mm256_srli_epi32(__m256i(b), 8))) * 0x1p-24f;
 }
 
-// As misWeight(), bsdfSampleWeight() and lightSampleWeight().
-Float8 misWeight(Mis mis, Float8 own, Float8 other) {
-  const Float8 ratio = other / own;
-  return 1 / (1 + (mis == Mis::Power ? ratio * ratio : ratio));
-}
-Float8 weightOfBsdfSample(Mis mis, Float8 bsdfPdf, Float8 lightPdf) {
-  const Float8 both = mis == Mis::Off ? Float8{} : misWeight(mis, bsdfPdf, lightPdf);
-  return lightPdf == 0 ? L::splat(1) : both;
-}
-Float8 weightOfLightSample(Mis mis, Float8 lightPdf, Float8 bsdfPdf) {
-  return mis == Mis::Off ? L::splat(1) : misWeight(mis, lightPdf, bsdfPdf);
-}
-
 // The least alpha behind a bounce (spreadOf()); 0 without regularisation or behind a mirror.
 Float8 widenedBy(Float8 widening, Float8 pdf) {
   const Float8 spread = smaller(L::splat(1), 1 / L::squareRoot(kPi * pdf));
   return pdf > 0 ? widening * spread : Float8{};
 }
-
-// Calls visit(lane) for the bits that are set.
-template <class Visit>
-void forBits(unsigned bits, const Visit& visit) {
-  for (; bits != 0; bits &= bits - 1) visit(unsigned(std::countr_zero(bits)));
-}
-
-Int8 isBlack(const Vector& c) { return (c.x == 0) & (c.y == 0) & (c.z == 0); }
 
 }  // namespace
 
@@ -65,7 +44,7 @@ struct WidePaths::Task {
 bool WidePaths::serves(const PathTracer& tracer, const PathContext& context) {
   const World& world = tracer.world();
   const PathSettings& s = tracer.settings();
-  return world.plain.any() && !world.scene.moves && world.sources.all.empty() &&
+  return world.plain.any() && !world.scene.moves && world.sources.distant.empty() &&
          tracer.mirrorAlpha() == 0 && tracer.lighting().sampleMany({}, {}) && s.maxDepth > 0 &&
          !s.limitsKinds() && s.compared == s.visible && (!s.guide || s.guide->empty()) &&
          (!s.caustics || s.caustics->empty()) && !context.groups && !context.log;
@@ -85,7 +64,7 @@ void WidePaths::Paths::add(const Paths& from, size_t i, const LanePacking& packi
   copy(widening, from.widening), copy(minAlpha, from.minAlpha);
   copy(hits.instance, from.hits.instance), copy(hits.triangle, from.hits.triangle);
   copy(hits.u, from.hits.u), copy(hits.v, from.hits.v), copy(hits.distance, from.hits.distance);
-  if (isRecorded) {
+  if (keepsVertices) {
     copy3(throughputBefore, from.throughputBefore);
     copy3(position, from.position), copy3(normal, from.normal);
   }
@@ -108,7 +87,7 @@ void WidePaths::start(const Task& task) {
   depth_ = 0;
   left_.clear();
   for (Paths* const paths : {paths_, next_, &escaped_})
-    paths->isRecorded = task.context.records != nullptr;
+    paths->keepsVertices = task.context.records || !task.world().sources.all.empty();
   Paths& paths = *paths_;
   paths.size = task.cameras.size();
   std::fill_n(task.radiances.begin(), paths.size, Rgb(0));
@@ -132,12 +111,14 @@ void WidePaths::follow(const CameraSamples& cameras, const PathTracer& tracer, P
     leaveLanes(task);
     if (paths_->size == 0) return;
     fillVertices(task);
+    addEmission(task);
     noteFirst(task);
     drawNumbers(task);
     task.lighting().sampleArrays(std::span(numbers_[dimension::kLight]).first(paths_->size),
                                  numbers_[dimension::kLight + 1].data(), lights_);
     scatter(task);
     traceShadowRays(task);
+    if (!sceneLights_.isEmpty()) sceneLights_.trace(tracer, keys_, context, radiances);
     ++depth_;
     std::swap(paths_, next_);
     if (depth_ == task.settings().maxDepth && tracer.surfacesEndPaths())
@@ -193,13 +174,20 @@ void WidePaths::endAtLimit(const Task& task) {
   for (size_t k = 0; k < paths_->size; ++k) {
     const PlainSurfaces::Part& part = partOf(task, k);
     const bool mayBeHidden = part.hidesBack && paths_->pdf[k] == 0;
-    if (part.kind == PlainSurfaces::Kind::Other || mayBeHidden || isFollowed(task, k))
+    if (isNotForLanes(task, k) || part.emits || mayBeHidden || isFollowed(task, k))
       handOver(task, k);
   }
 }
 
 const PlainSurfaces::Part& WidePaths::partOf(const Task& task, size_t path) const {
   return task.world().plain.part(size_t(paths_->hits.instance[path]));
+}
+
+bool WidePaths::isNotForLanes(const Task& task, size_t path) const {
+  const HitArrays& hits = paths_->hits;
+  return partOf(task, path).kind == PlainSurfaces::Kind::Other ||
+         task.world().sharedPlaces.contains(uint32_t(hits.instance[path]),
+                                            uint32_t(hits.triangle[path]));
 }
 
 // Paths whose first hit notes what is seen in smooth mirrors leave the lanes there.
@@ -211,9 +199,7 @@ void WidePaths::leaveLanes(const Task& task) {
   paths_->removeIf([&](size_t i, unsigned here) {
     unsigned gone = 0;
     forBits(here, [&](unsigned lane) {
-      if (partOf(task, i + lane).kind != PlainSurfaces::Kind::Other &&
-          !notesMirrored(task, i + lane))
-        return;
+      if (!isNotForLanes(task, i + lane) && !notesMirrored(task, i + lane)) return;
       handOver(task, i + lane);
       gone |= 1u << lane;
     });
@@ -229,7 +215,7 @@ void WidePaths::handOver(const Task& task, size_t k) {
   state.radiance = task.radiances[id];
   state.throughput = paths_->throughput.at(k);
   state.from = {state.ray.origin, state.ray.direction, nullptr, depth_ - 1};
-  if (paths_->isRecorded && depth_ > 0) {
+  if (paths_->keepsVertices && depth_ > 0) {
     state.from.position = paths_->position.at(k), state.from.normal = paths_->normal.at(k);
     state.throughputBefore = paths_->throughputBefore.at(k);
   }
@@ -313,6 +299,20 @@ void WidePaths::fillVertices(const Task& task) {
   }
 }
 
+// As PathTracer::foundEmission().
+void WidePaths::addEmission(const Task& task) {
+  if (task.world().sources.all.empty()) return;
+  for (size_t k = 0; k < paths_->size; ++k) {
+    if (!partOf(task, k).emits || vertices_.isHidden[k]) continue;
+    const LightPoint from{paths_->position.at(k), paths_->normal.at(k), nullptr, depth_ - 1};
+    const Instance& instance = task.world().scene.instances[size_t(paths_->hits.instance[k])];
+    task.radiances[size_t(paths_->id[k])] +=
+        paths_->throughput.at(k) * task.tracer.foundEmission(from, paths_->pdf[k],
+                                                             paths_->rays.direction.at(k),
+                                                             vertices_.surface(k), instance);
+  }
+}
+
 void WidePaths::noteFirst(const Task& task) {
   for (size_t k = 0; k < paths_->size; ++k) {
     const size_t id = size_t(paths_->id[k]);
@@ -350,6 +350,9 @@ void WidePaths::drawNumbers(const Task& task) {
 void WidePaths::scatter(const Task& task) {
   shadows_.size = next_->size = 0;
   shadows_.records.clear();
+  const std::span ids(paths_->id.data(), paths_->size);
+  sceneLights_.draw(task.world(), task.cameras, ids, depth_, vertices_, task.context);
+  if (!sceneLights_.isEmpty()) setKeys(task);
   for (size_t i = 0; i < paths_->size; i += kWidth) scatterLanes(task, i);
   task.context.counts.bounce += next_->size;
 }
@@ -377,6 +380,8 @@ void WidePaths::scatterLanes(const Task& task, size_t i) {
   lit.store(&shadows_.id[s], loadLanes(&paths_->id[i]));
   shadows_.size += lit.count();
   if (task.context.records) recordSamples(i, lit.bits(), value, bsdf.normal());
+  if (!sceneLights_.isEmpty())
+    sceneLights_.scatter(i, bsdf, throughput, task.settings().mis, vertices_, paths_->id);
 
   const BsdfLanesSample bounce = bsdf.sample(unitsOf(numbers_[dimension::kBsdf], i),
                                              unitsOf(numbers_[dimension::kBsdf + 1], i),
@@ -402,7 +407,7 @@ void WidePaths::scatterLanes(const Task& task, size_t i) {
   on.store(&next_->widening[n], widening);
   on.store(&next_->minAlpha[n], larger(minAlpha, widenedBy(widening, bounce.pdf)));
   next_->size += on.count();
-  if (!next_->isRecorded) return;
+  if (!next_->keepsVertices) return;
   next_->position.store(n, vertices_.position.load(i), on);
   next_->normal.store(n, bsdf.normal(), on);
   next_->throughputBefore.store(n, throughput, on);

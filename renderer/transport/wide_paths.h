@@ -10,18 +10,20 @@
 
 #include "lighting/light_arrays.h"
 #include "transport/integrator.h"
+#include "transport/scene_light_lanes.h"
 #include "transport/vertex_arrays.h"
 
 namespace chromeball {
 
-// All paths are at the same depth. Vertices that a path may pass without a bounce, that emit light
-// or that have other lobes are not for lanes: from there PathBatch follows the path.
+// All paths are at the same depth. Vertices that a path may pass without a bounce, that share their
+// place with a lamp or that have other lobes are not for lanes: from there PathBatch follows the
+// path.
 class WidePaths {
  public:
   static constexpr size_t kMaxPaths = kMostInArrays;
 
-  // Whether this is how the tracer's paths are followed: for one light source, a strategy whose
-  // samples do not depend on the point, and nothing else that watches or guides the paths.
+  // Whether this is how the tracer's paths are followed: for a strategy whose samples do not depend
+  // on the point, without a scene's suns, and with nothing else that watches or guides the paths.
   static bool serves(const PathTracer& tracer, const PathContext& context);
 
   // Follows the paths of camera rays, up to kMaxPaths, to their ends, or until PathBatch must go
@@ -44,8 +46,8 @@ class WidePaths {
     // As in PathState; 0: no regularisation.
     alignas(64) LaneArray<float> widening, minAlpha;
     HitArrays hits;
-    // The vertex at the ray's origin, if it is recorded for guides.
-    bool isRecorded = false;
+    // The vertex at the ray's origin, if guides record it or lamps may be hit.
+    bool keepsVertices = false;
     LaneArrays3 position, normal, throughputBefore;
     size_t size = 0;
 
@@ -67,10 +69,12 @@ class WidePaths {
   void endAtLimit(const Task& task);
   void leaveLanes(const Task& task);
   bool isFollowed(const Task& task, size_t path) const;
+  bool isNotForLanes(const Task& task, size_t path) const;
   bool notesMirrored(const Task& task, size_t path) const;
   const PlainSurfaces::Part& partOf(const Task& task, size_t path) const;
   void handOver(const Task& task, size_t path);
   void fillVertices(const Task& task);
+  void addEmission(const Task& task);
   void noteFirst(const Task& task);
   void drawNumbers(const Task& task);
   void scatter(const Task& task);
@@ -90,6 +94,7 @@ class WidePaths {
   // By dimension: the bits of the random numbers of the vertices.
   alignas(64) std::array<LaneArray<uint32_t>, dimension::kPerVertex> numbers_;
   LightArrays lights_;
+  SceneLightLanes sceneLights_;
 
   struct ShadowRays {
     RayArrays rays;
