@@ -9,6 +9,8 @@
 
 namespace chromeball {
 
+inline constexpr size_t kLanes = LanesOf<Float8>::kCount;
+
 // As misWeight(), bsdfSampleWeight() and lightSampleWeight().
 inline Float8 misWeight(Mis mis, Float8 own, Float8 other) {
   const Float8 ratio = other / own;

@@ -12,7 +12,6 @@ namespace {
 
 using L = LanesOf<Float8>;
 using Vector = Lanes3<Float8>;
-constexpr size_t kWidth = L::kCount;
 
 }  // namespace
 
@@ -34,7 +33,7 @@ void SceneLightLanes::draw(const World& world, const CameraSamples& cameras,
 void SceneLightLanes::scatter(size_t i, const PlainBsdfLanes& bsdf, const Vector& throughput,
                               Mis mis, const VertexArrays& vertices, std::span<const int32_t> ids) {
   size_t most = 0;
-  for (size_t k = i; k < i + kWidth; ++k) most = std::max(most, begins_[k + 1] - begins_[k]);
+  for (size_t k = i; k < i + kLanes; ++k) most = std::max(most, begins_[k + 1] - begins_[k]);
   for (size_t j = 0; j < most; ++j) {  // sample j of each vertex
     LaneArrays3 direction, light;
     alignas(64) LaneArray<float> pdf;
@@ -42,7 +41,7 @@ void SceneLightLanes::scatter(size_t i, const PlainBsdfLanes& bsdf, const Vector
       const size_t at = begins_[i + k] + j;
       return at < begins_[i + k + 1] ? &samples_[at] : nullptr;
     };
-    for (size_t k = 0; k < kWidth; ++k) {
+    for (size_t k = 0; k < kLanes; ++k) {
       const DirectionSample* const sample = sampleOf(k);
       direction.set(k, sample ? sample->wi : vec3(0, 1, 0));
       light.set(k, sample ? sample->irradiance : Rgb(0));

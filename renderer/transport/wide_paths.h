@@ -8,10 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "lighting/light_arrays.h"
 #include "transport/integrator.h"
-#include "transport/scene_light_lanes.h"
-#include "transport/vertex_arrays.h"
+#include "transport/scatter_lanes.h"
 
 namespace chromeball {
 
@@ -35,77 +33,34 @@ class WidePaths {
   std::span<const uint32_t> left() const { return left_; }
 
  private:
-  // Paths that are still followed, without gaps.
-  struct Paths {
-    RayArrays rays;
-    LaneArrays3 throughput;
-    alignas(64) LaneArray<float> pdf;          // of the ray; 0: from the camera or a smooth mirror
-    alignas(64) LaneArray<float> length;       // from the camera to the ray's origin
-    alignas(64) LaneArray<int32_t> id;         // of the camera
-    alignas(64) LaneArray<int32_t> scattered;  // -1 or 0, as in PathState
-    // As in PathState; 0: no regularisation.
-    alignas(64) LaneArray<float> widening, minAlpha;
-    HitArrays hits;
-    // The vertex at the ray's origin, if guides record it or lamps may be hit.
-    bool keepsVertices = false;
-    LaneArrays3 position, normal, throughputBefore;
-    size_t size = 0;
-
-    // Appends the paths of `from` at [i, i + 8) that are packed. `from` may be this, if no path
-    // before them is still wanted where they go.
-    void add(const Paths& from, size_t i, const LanePacking& packing);
-    // Removes the paths of each eight whose bits isGone(first, here) returns; `here`: the bits of
-    // those that exist.
-    template <class IsGone>
-    void removeIf(const IsGone& isGone);
-  };
-  struct Task;
-
-  void start(const Task& task);
-  void traceRays(const Task& task);
-  void traceLastRays(const Task& task);
-  void endEscaped(const Task& task);
-  void addEscaped(const Task& task);
-  void endAtLimit(const Task& task);
-  void leaveLanes(const Task& task);
-  bool isFollowed(const Task& task, size_t path) const;
-  bool isNotForLanes(const Task& task, size_t path) const;
-  bool notesMirrored(const Task& task, size_t path) const;
-  const PlainSurfaces::Part& partOf(const Task& task, size_t path) const;
-  void handOver(const Task& task, size_t path);
-  void fillVertices(const Task& task);
-  void addEmission(const Task& task);
-  void noteFirst(const Task& task);
-  void drawNumbers(const Task& task);
-  void scatter(const Task& task);
-  void scatterLanes(const Task& task, size_t first);
-  void recordSamples(size_t first, unsigned lit, const BsdfLanesValue& value,
-                     const Lanes3<Float8>& normal);
+  void start(const LaneTask& task);
+  void traceRays(const LaneTask& task);
+  void traceLastRays(const LaneTask& task);
+  void endEscaped(const LaneTask& task);
+  void addEscaped(const LaneTask& task);
+  void endAtLimit(const LaneTask& task);
+  void leaveLanes(const LaneTask& task);
+  bool isFollowed(const LaneTask& task, size_t path) const;
+  bool isNotForLanes(const LaneTask& task, size_t path) const;
+  bool notesMirrored(const LaneTask& task, size_t path) const;
+  const PlainSurfaces::Part& partOf(const LaneTask& task, size_t path) const;
+  void handOver(const LaneTask& task, size_t path);
+  void leaveHidden(const LaneTask& task);
+  bool isHidden(size_t path) const { return scatter_.vertices().isHidden[path] != 0; }
+  void addEmission(const LaneTask& task);
+  void noteFirst(const LaneTask& task);
   LightRecord recordOf(size_t escaped, const Rgb& found, float lightPdf) const;
-  void traceShadowRays(const Task& task);
-  void setKeys(const Task& task);
+  void setKeys(const LaneTask& task);
 
   int depth_ = 0;
-  std::array<Paths, 2> buffers_;
-  Paths* paths_ = &buffers_[0];  // at this depth, and those that go on
-  Paths* next_ = &buffers_[1];
-  Paths escaped_;
-  VertexArrays vertices_;
-  // By dimension: the bits of the random numbers of the vertices.
-  alignas(64) std::array<LaneArray<uint32_t>, dimension::kPerVertex> numbers_;
-  LightArrays lights_;
-  SceneLightLanes sceneLights_;
-
-  struct ShadowRays {
-    RayArrays rays;
-    LaneArrays3 radiance;  // at the camera, if nothing is in the way
-    alignas(64) LaneArray<int32_t> id;
-    size_t size = 0;
-    std::vector<LightRecord> records;  // if they are wanted
-  } shadows_;
-
+  std::array<PathArrays, 2> buffers_;
+  PathArrays* paths_ = &buffers_[0];  // at this depth, and those that go on
+  PathArrays* next_ = &buffers_[1];
+  PathArrays escaped_;
+  ScatterLanes scatter_;
+  LightArrays found_;  // by those that escaped
+  PathBatch* rest_ = nullptr;
   std::array<Rgb, kMaxPaths> transmittances_;
-  std::array<float, kMaxPaths> crossSections_;
   std::array<uint32_t, kMaxPaths> keys_;  // as PixelSampler::sampleKey()
   std::vector<uint32_t> left_;
 };
