@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/memory.h"
+#include "math/lanes.h"
 
 namespace chromeball {
 
@@ -57,6 +58,27 @@ double FractionCdfRows::setRow(int row, std::span<const double> weights) {
   std::fill(of + columns_, of + stride(), std::numeric_limits<uint32_t>::max());
   std::ranges::copy(exact.guide(0), &guide_[size_t(row) * (kGuide + 1)]);
   return total;
+}
+
+// Few loops end at a place that depends on u: they are mispredicted.
+int FractionCdfRows::sample(int row, uint32_t u, float& within) const {
+  constexpr int kSteps = 4;  // of kAtOnce columns, at most
+  const uint32_t* const of = ends(row);
+  const int32_t* range = guide(row, u);
+  int i = range[0];
+  for (int last = range[1]; last - i > kSteps * kAtOnce;) {
+    const int middle = (i + last) / 2;
+    of[middle - 1] < u ? i = middle : last = middle;
+  }
+  const Int8 own = Int8{} + int32_t(u);
+  for (unsigned reached = 0; reached == 0;) {
+    const Int8 end = loadLanes(reinterpret_cast<const int32_t*>(of + i));
+    reached = bitsOf(Int8(_mm256_max_epu32(__m256i(end), __m256i(own))) == end);  // end >= u
+    i += reached == 0 ? kAtOnce : std::countr_zero(reached);
+  }
+  const uint32_t begin = i > *guide(row, 0) ? of[i - 1] + 1 : 0;
+  within = (float(u - begin) + 0.5f) / (float(of[i] - begin) + 1);
+  return i;
 }
 
 }  // namespace chromeball

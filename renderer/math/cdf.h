@@ -72,22 +72,7 @@ class FractionCdfRows {
   void prefetchEnds(int row, uint32_t u) const { __builtin_prefetch(ends(row) + *guide(row, u)); }
 
   // The column whose interval contains u; `within` is the position inside the interval, in [0, 1].
-  int sample(int row, uint32_t u, float& within) const {
-    const uint32_t* const of = ends(row);
-    const int32_t* range = guide(row, u);
-    int i = range[0];
-    for (int last = range[1]; last - i > kAtOnce;) {
-      const int middle = (i + last) / 2;
-      of[middle - 1] < u ? i = middle : last = middle;
-    }
-    for (int below = kAtOnce; below == kAtOnce; i += below) {
-      below = 0;  // a vector compares them all: a loop that ends at the column is mispredicted
-      for (int k = 0; k < kAtOnce; ++k) below += of[i + k] < u;
-    }
-    const uint32_t begin = i > *guide(row, 0) ? of[i - 1] + 1 : 0;
-    within = (float(u - begin) + 0.5f) / (float(of[i] - begin) + 1);
-    return i;
-  }
+  int sample(int row, uint32_t u, float& within) const;
 
  private:
   static constexpr int kAtOnce = 8;

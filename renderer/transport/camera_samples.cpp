@@ -20,18 +20,22 @@ CameraSample CameraSamples::operator[](size_t i) const {
           .layers = layers_.subspan(i * layerCount_, layerCount_)};
 }
 
-void CameraSamples::clear() { pixels_.clear(), numbers_.clear(), times_.clear(), keys_.clear(); }
+void CameraSamples::grow() {
+  groups_.emplace_back();
+  const size_t size = groups_.size() * kMostInArrays;
+  pixels_.resize(size), numbers_.resize(size), times_.resize(size), keys_.resize(size);
+}
 
 void CameraSamples::add(const CameraPixel& pixel, const PixelSampler& sampler, uint32_t index,
                         float widening) {
-  const size_t i = size();
-  if (i == groups_.size() * kMostInArrays) groups_.emplace_back();
+  const size_t i = size_++;
+  if (i == pixels_.size()) grow();
   groups_[i / kMostInArrays].widening[i % kMostInArrays] = widening;
-  pixels_.push_back(&pixel);
-  numbers_.push_back(sampler.sampleAt(pixel.numbers, index));
-  times_.push_back(0);
+  pixels_[i] = &pixel;
+  numbers_[i] = sampler.sampleAt(pixel.numbers, index);
+  times_[i] = 0;
   // Other surfaces at the place of a hit are met with the keys of the vertex.
-  keys_.push_back(PixelSampler::vertexKey(numbers_.back(), 0));
+  keys_[i] = PixelSampler::vertexKey(numbers_[i], 0);
 }
 
 void CameraSamples::setRay(size_t i, const Ray& ray) {

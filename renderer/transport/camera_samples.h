@@ -13,10 +13,10 @@ namespace chromeball {
 // Samples (camera_sample.h), with the rays and hits in arrays. Keeps its memory, for many uses.
 class CameraSamples {
  public:
-  size_t size() const { return pixels_.size(); }
+  size_t size() const { return size_; }
   CameraSample operator[](size_t i) const;
 
-  void clear();
+  void clear() { size_ = 0; }
   // Adds sample `index` of the pixel; its ray is set later.
   void add(const CameraPixel& pixel, const PixelSampler& sampler, uint32_t index, float widening);
   void setRay(size_t i, const Ray& ray);
@@ -48,8 +48,10 @@ class CameraSamples {
   const Group& group(size_t i) const { return groups_[i]; }
 
  private:
+  void grow();
   void findMovingHits(const World& world, RayMask visible, size_t begin, size_t count);
 
+  size_t size_ = 0;
   std::vector<const CameraPixel*> pixels_;
   std::vector<PixelSampler::Sample> numbers_;
   std::vector<float> times_;

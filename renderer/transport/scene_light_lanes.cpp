@@ -19,6 +19,7 @@ void SceneLightLanes::draw(const World& world, const CameraSamples& cameras,
                            std::span<const int32_t> ids, int depth, const VertexArrays& vertices,
                            PathContext& context) {
   samples_.clear(), shadows_.clear(), rays_.clear();
+  if (world.sources.all.empty()) return;
   for (size_t k = 0; k < ids.size(); ++k) {
     begins_[k] = samples_.size();
     if (vertices.isHidden[k]) continue;
