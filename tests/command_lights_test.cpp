@@ -56,6 +56,8 @@ TEST(CommandLights, EveryFormatAndThePreview) {
     EXPECT_EQ(light["angle"], 0);
   }
   EXPECT_EQ(readImage(folder / "a.png").width, 1024);
+  run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "b.JSON"});
+  EXPECT_EQ(jsonOfFile(folder / "b.JSON")["lights"], file["lights"]);
   run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "a.gltf"});
   EXPECT_EQ(jsonOfFile(folder / "a.gltf")["nodes"].size(), 8u);
   run({"lights", probe, "--method", "median-cut", "--count", "8", "-o", folder / "a.csv"});

@@ -11,6 +11,7 @@
 #include "json_file.h"
 #include "scene/gltf/load_gltf.h"
 #include "temporary_folder.h"
+#include "trace/accel.h"
 
 namespace chromeball::gltf_file_test {
 namespace {
@@ -117,6 +118,41 @@ TEST(GltfFile, LargeNumbersInExtensions) {
     const Scene scene = w.load();
     EXPECT_FLOAT_EQ(scene.materials.at(0).emission.x, float(value.get<double>())) << number;
     EXPECT_FLOAT_EQ(scene.lights.at(0).intensity.x, float(value.get<double>() / 683)) << number;
+  }
+}
+
+// Numbers beyond float become its largest, with a warning.
+TEST(GltfFile, NumbersBeyondFloat) {
+  GltfWriter w;
+  w.root["materials"] = {
+      {{"extensions", {{"KHR_materials_specular", {{"specularColorFactor", {1e39, 1, 1e300}}}}}}}};
+  addTriangle(w, {{"material", 0}});
+  const Scene scene = w.load();
+  EXPECT_TRUE(isFinite(scene.materials.at(0).specularColor));
+  EXPECT_FALSE(w.warnings.empty());
+}
+
+// Two nodes of one mesh, which is traced as instances unless a scale would take rays beyond the
+// numbers of the acceleration structure.
+TEST(GltfFile, InstancesOfAnyScale) {
+  for (const double scale : {1e-30, 1e-19, 1e-15, 1e-9, 1e-3, 1.0, 1e3, 1e9}) {
+    const float size = float(1 / scale);
+    GltfWriter w;
+    w.mesh({{"attributes", {{"POSITION", w.vec3s({0, 0, 0, size, 0, 0, 0, size, 0})}}}});
+    w.root["nodes"] = {{{"mesh", 0}, {"scale", {scale, scale, 1}}},
+                       {{"mesh", 0}, {"scale", {scale, scale, scale}}, {"translation", {5, 0, 0}}}};
+    w.root["scenes"] = {{{"nodes", {0, 1}}}};
+    const Scene scene = w.load();
+    ASSERT_EQ(scene.instances.size(), 2u) << scale;
+    const Accel accel(scene);
+    for (const float x : {0.0f, 5.0f})
+      for (const float height : {1.0f, 1e3f, 1e6f}) {
+        Hit hit;
+        ASSERT_TRUE(accel.intersect({{x + 0.25f, 0.25f, height}, {0, 0, -1}}, 0, hit))
+            << scale << " " << x;
+        EXPECT_NEAR(hit.distance, height, 1e-5f * height) << scale;
+        EXPECT_FALSE(accel.intersect({{x + 0.75f, 0.75f, height}, {0, 0, -1}}, 0, hit)) << scale;
+      }
   }
 }
 

@@ -412,6 +412,19 @@ TEST_F(Tiff, ZeroIsWhiteOfAnyBits) {
   }
 }
 
+// TIFF 6.0, section 18: associated alpha has multiplied the codes, here of 200 and 255.
+TEST_F(Tiff, AssociatedCodesAreDecodedWithoutTheirAlpha) {
+  const auto of = [&](const std::string& codes, uint32_t kind) {
+    return read({{2, 1, codes, 1, 2, 8, 1, 1, {{338, 3, {kind}}}}}).image.texels;
+  };
+  const std::vector<float> straight = of("\xc8\x80\xff\x33", 2),
+                           associated = of("\x64\x80\x33\x33", 1);
+  ASSERT_EQ(associated.size(), 4u);
+  for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(associated[i], straight[i], 0.004) << i;
+  EXPECT_NEAR(associated[2], 0.2f, 1e-6) << "white, a fifth covered";
+  EXPECT_EQ(of(std::string("\x00\x00\x00\x00", 4), 1), std::vector<float>(4, 0.0f));
+}
+
 // Further samples of unstated meaning, which OpenImageIO calls green, blue or alpha.
 TEST_F(Tiff, GreyStaysGreyBesideOtherSamples) {
   constexpr uint16_t kExtraSamples = 338;

@@ -35,6 +35,17 @@ inline bool isInvertible(const glm::dmat3& map) {
   return std::isfinite(volume) && std::fabs(glm::determinant(m)) > kSingular * volume;
 }
 
+// Whether a mesh that the map places may be traced as an instance, for which rays are transformed
+// back: coordinates up to 1e9 m then stay within Embree's, 1.8e18, and small ones do not underflow.
+inline constexpr double kMostInstanceScale = 1e8;
+inline bool canPlaceInstance(const glm::dmat3& map) {
+  if (!isInvertible(map)) return false;
+  const glm::dmat3 back = glm::inverse(map);
+  for (int i = 0; i < 3; ++i)
+    if (!(std::max(glm::length(map[i]), glm::length(back[i])) <= kMostInstanceScale)) return false;
+  return true;
+}
+
 // Whether the map leaves some surface an area: at least two of the axes' images span one.
 inline bool leavesArea(const glm::dmat3& map) {
   const glm::dmat3 m(glm::mat3{map});

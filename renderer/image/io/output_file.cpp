@@ -38,7 +38,7 @@ fs::path folderOf(const fs::path& file) {
 
 void checkOutputFile(const std::string& path, const std::vector<std::string_view>& extensions) {
   const fs::path file = path;
-  if (std::find(extensions.begin(), extensions.end(), file.extension()) == extensions.end())
+  if (std::find(extensions.begin(), extensions.end(), lowerExtension(file)) == extensions.end())
     throwInput("{}: the name must end in {}", path, fmt::join(extensions, " or "));
   checkReplaceable(file);
 }

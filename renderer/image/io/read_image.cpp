@@ -204,6 +204,20 @@ std::vector<uint8_t> withPictureFirst(std::vector<uint8_t> bytes, const fs::path
   return tiff.withFirstDirectory(picture);
 }
 
+// `isAssociated`: the codes have been multiplied by alpha (TIFF 6.0, section 18).
+void decodeSrgb(Image& image, int alphaChannel, bool isAssociated) {
+  const auto channels = size_t(image.channels);
+  for (size_t first = 0; first < image.texels.size(); first += channels) {
+    const float alpha =
+        alphaChannel >= 0 && isAssociated ? image.texels[first + size_t(alphaChannel)] : 1;
+    for (size_t c = 0; c < channels; ++c) {
+      float& texel = image.texels[first + c];
+      if (int(c) == alphaChannel) continue;
+      texel = alpha > 0 ? alpha * srgbToLinear(texel / alpha) : srgbToLinear(texel);
+    }
+  }
+}
+
 ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   ImageFile file;
   const std::vector<uint8_t> bytes =
@@ -225,9 +239,7 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   checkDeflate(bytes);
   image->read(file.image.texels.data());
   if (file.integers && integers == IntegerTexels::Srgb)
-    for (size_t i = 0; i < file.image.texels.size(); ++i)
-      if (int(i % header.channels.size()) != header.alphaChannel)
-        file.image.texels[i] = srgbToLinear(file.image.texels[i]);
+    decodeSrgb(file.image, header.alphaChannel, !header.unassociatedAlpha);
   if (header.unassociatedAlpha && !(file.integers && integers == IntegerTexels::Levels))
     associate(file.image, header.alphaChannel);
   file.image = oriented(std::move(file.image), exifOrientation(bytes));

@@ -117,7 +117,7 @@ LightFormat lightFormat(const std::filesystem::path& path, std::string_view name
                         std::string_view location) {
   std::vector<std::string_view> names;
   for (const NamedFormat& format : kFormats) {
-    if (name.empty() ? path.extension() == format.extension : name == format.name)
+    if (name.empty() ? lowerExtension(path) == format.extension : name == format.name)
       return format.format;
     names.push_back(format.name);
   }

@@ -224,10 +224,13 @@ void SceneBuilder::addInstance(int mesh, int material, int node,
   checkIndex("mesh", mesh, scene_.meshes.size());
   checkIndex("material", material, scene_.materials.size());
   checkIndex("node", node, scene_.nodeNames.size());
-  if (toWorld && (!isInvertible(glm::dmat3(toWorld->linear)) || !isFinite(toWorld->translation)))
+  if (toWorld &&
+      (!canPlaceInstance(glm::dmat3(toWorld->linear)) || !isFinite(toWorld->translation)))
     throwInput(
-        "instance {} (\"{}\"): its transform is not invertible, or beyond the range of float",
-        scene_.instances.size(), scene_.nodeNames[size_t(node)]);
+        "instance {} (\"{}\"): its transform is not invertible, beyond the range of float, or "
+        "scales by more than {:g} or less than {:g}; transform its vertices",
+        scene_.instances.size(), scene_.nodeNames[size_t(node)], kMostInstanceScale,
+        1 / kMostInstanceScale);
   scene_.instances.push_back(
       {.mesh = mesh, .material = material, .node = node, .toWorld = toWorld, .moves = moves});
 }

@@ -125,9 +125,9 @@ class InstanceReader {
   }
 
   void addInstance(const Plan& plan) {
-    // Rays are not transformed back through a flattened instance: it has a mesh of its own.
+    // Rays are not transformed back through a flattened or tiny instance: it has a mesh of its own.
     const bool shared =
-        plan.geometry && plan.geometry->users > 1 && isInvertible(glm::dmat3(plan.toWorld));
+        plan.geometry && plan.geometry->users > 1 && canPlaceInstance(glm::dmat3(plan.toWorld));
     int mesh = shared ? plan.geometry->mesh : -1;
     if (mesh == -1) mesh = readMesh(plan, shared || !plan.geometry ? nullptr : &plan.toWorld);
     if (mesh == -1) return;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/material_reader.h"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "scene/gltf/decode_images.h"
@@ -12,6 +14,7 @@ namespace {
 using tinygltf::Value;
 
 constexpr int kMaxUvSet = 15;
+constexpr float kLargest = std::numeric_limits<float>::max();
 
 Wrap readWrap(const GltfFile& file, int code, const std::string& where) {
   if (code == TINYGLTF_TEXTURE_WRAP_REPEAT) return Wrap::Repeat;
@@ -97,7 +100,7 @@ Material MaterialReader::convert(const tinygltf::Material& source, const std::st
   }
   if (const auto e = named("KHR_materials_specular"); e && !glossiness) {
     m.specular = e->number("specularFactor", 1);
-    m.specularColor = e->color("specularColorFactor", Rgb(1), INFINITY);
+    m.specularColor = e->color("specularColorFactor", Rgb(1), kLargest);
     m.specularTexture = e->texture("specularTexture");
     m.specularColorTexture = e->texture("specularColorTexture", {.srgb = true});
   }
@@ -137,12 +140,12 @@ TextureSlot MaterialReader::slot(int index, int uvSet, const tinygltf::Extension
   if (const Value* e = findExtension(extensions, "KHR_texture_transform")) {
     const std::string at = where + ".KHR_texture_transform";
     const float angle = member(file_, *e, "rotation", 0, -1e6, 1e6, at);
-    const vec2 scale = vectorMember<2>(file_, *e, "scale", vec2(1), -INFINITY, INFINITY, at);
+    const vec2 scale = vectorMember<2>(file_, *e, "scale", vec2(1), -kLargest, kLargest, at);
     const float c = std::cos(angle), sn = std::sin(angle);
     // The rotation is counter-clockwise as seen, with v pointing down.
     s.uvRow0 = vec2(c, sn) * scale;
     s.uvRow1 = vec2(-sn, c) * scale;
-    s.uvOffset = vectorMember<2>(file_, *e, "offset", vec2(0), -INFINITY, INFINITY, at);
+    s.uvOffset = vectorMember<2>(file_, *e, "offset", vec2(0), -kLargest, kLargest, at);
     s.uvSet = intMember(*e, "texCoord", uvSet);
   }
   if (s.uvSet < 0 || s.uvSet > kMaxUvSet)

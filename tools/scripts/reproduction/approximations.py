@@ -103,7 +103,7 @@ def irradiance_cache(run):
         "RADIANCE computes indirect irradiance at few points; a sequence of a static scene uses them "
         "again, which made the RNL animation several thousand times faster to render.",
         ["chromeball render scenes/models/pillars.gltf --probe probes/noon.exr --strategy suns "
-         "--irradiance-cache 0.2 --cache records --orbit 15 -o OUT.exr"],
+         "--irradiance-cache 0.2 --cache records -o OUT.exr"],
         "64 samples:\n\n" + table(["way", "seconds", "relMSE", "bias", "FLIP"], rows),
         "The cache takes away the noise of the light between surfaces and nothing else. The factor of the text is the "
         "product of records in place of hemispheres at all pixels, and of frames that share them.")

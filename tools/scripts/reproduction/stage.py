@@ -48,9 +48,9 @@ def sums(run):
         "HDRI figures 9.43 and 9.44: a light stage, and its sum under probes",
         "Pictures of a face under light from each direction, each times the colour of a probe from there, add up to the "
         "face under the probe: Grace Cathedral, a grove, Uffizi, St Peter's.",
-        [f"chromeball basis scenes/models/still-life.glb --directions lat-long:{COLUMNS}x{ROWS} -o stage.exr",
+        [f"chromeball basis scenes/models/still-life.glb --directions lat-long:{COLUMNS}x{ROWS} --transparent -o stage.exr",
          "chromeball relight stage.exr --probe PROBE -o OUT.exr"],
-        f"{COLUMNS * ROWS} elements from one pass; the sum against a render under the probe:\n\n"
+        f"{COLUMNS * ROWS} elements from one pass; the sum against a render under the probe, both without background:\n\n"
         + table(["probe", "relMSE", "bias", "FLIP"], rows),
         "The subject is a still life instead of a face. The mirror ball shows the cells of the lat-long map, and small "
         "suns are spread over a whole cell: most of the difference ([light stage](../light-stage.md) has it by "
