@@ -8,6 +8,7 @@
 
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
+#include <set>
 
 #include "math/vec.h"
 #include "scene/mesh.h"
@@ -464,6 +465,65 @@ TEST(Accel, MasksHideInstances) {
   EXPECT_FALSE(accel.intersect(down, 0, hit, 8));
   EXPECT_TRUE(accel.intersect(down, 0, hit, 6));
   EXPECT_EQ(hit.instance, 1u);
+}
+
+// Two grids in one plane, whose meshes have a placement of any scale: each point of one finds the
+// triangles of both that it lies in, and all that come near are found at any time of a motion.
+TEST(Accel, WhatIsNearIsFoundInInstancesOfAnyScale) {
+  constexpr uint32_t kSide = 6;
+  for (const float scale : {1e-6f, 1e-4f, 1e-3f, 2e-3f, 0.1f, 1.0f, 30.0f, 1e4f})
+    for (const bool isMoving : {false, true}) {
+      Scene scene;
+      const int material = addMaterial(scene, lambert(Rgb(1)));
+      const vec3 unequal = isMoving ? vec3(1) : vec3(1, 1.5f, 0.7f);
+      for (int k = 0; k < 2; ++k) {
+        Mesh grid;
+        for (uint32_t j = 0; j <= kSide; ++j)
+          for (uint32_t i = 0; i <= kSide; ++i)
+            grid.positions.push_back(vec3(float(i) - 3, float(j) - 3, 3) / scale);
+        for (uint32_t j = 0; j < kSide; ++j)
+          for (uint32_t i = 0; i < kSide; ++i) {
+            const uint32_t a = j * (kSide + 1) + i;
+            grid.triangles.push_back({a, a + 1, a + kSide + 2});
+            grid.triangles.push_back({a, a + kSide + 2, a + kSide + 1});
+          }
+        addMesh(scene, material, grid);
+        Instance& instance = scene.instances.back();
+        const Transform first{
+            glm::mat3(scale) * glm::mat3(unequal.x, 0, 0, 0, unequal.y, 0, 0, 0, unequal.z),
+            vec3(0.25f, 0, 1)};
+        instance.toWorld = first;
+        if (!isMoving) continue;
+        Transform last = first;
+        last.linear *= 2, last.translation += vec3(0, 5, 0);
+        const auto mesh = scene.meshes.shared(size_t(instance.mesh));
+        InstanceMotion motion;
+        motion.keys = {{mesh, first}, {mesh, last}};
+        instance.motion = std::make_shared<const InstanceMotion>(motion);
+        instance.moves = scene.moves = true;
+      }
+      const Accel accel(scene);
+      for (const float time : {0.0f, 0.4f, 1.0f}) {
+        if (!isMoving && time > 0) continue;
+        for (uint32_t t = 0; t < 2 * kSide * kSide; ++t) {
+          const Surface surface =
+              surfaceAt(scene, scene.instances[0], t, {0.3f, 0.25f}, {0, 0, 1}, 0, time);
+          std::set<std::pair<uint32_t, uint32_t>> found;
+          accel.forEachNear(surface.position, 4 * surface.rayOffset, time,
+                            [&](uint32_t instance, uint32_t triangle) {
+                              found.emplace(instance, triangle);
+                              return true;
+                            });
+          for (const uint32_t instance : {0u, 1u})
+            EXPECT_TRUE(found.contains({instance, t})) << scale << " " << time << " " << t;
+          EXPECT_LE(found.size(), 40u);
+          int visited = 0;
+          accel.forEachNear(surface.position, 4 * surface.rayOffset, time,
+                            [&](uint32_t, uint32_t) { return ++visited < 1; });
+          EXPECT_EQ(visited, 1) << "the search ends when it is told to";
+        }
+      }
+    }
 }
 
 }  // namespace

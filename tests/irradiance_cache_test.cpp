@@ -300,6 +300,22 @@ TEST(SlowIrradianceCache, CountsLightBehindGlassOnce) {
   EXPECT_NEAR(changeByCache(straight, sky, smallRender(24, 24, 256, 4)), 0, 0.03);
 }
 
+// A white sheet that transmits a part of the light, before a white wall, in a white furnace.
+TEST(IrradianceCache, SeesThroughSmoothSheetsOnce) {
+  for (const float transmission : {0.1f, 0.5f, 0.9f, 1.0f}) {
+    Scene scene;
+    Material sheet = lambert(Rgb(1));
+    sheet.roughness = 0;
+    sheet.doubleSided = true;
+    sheet.extended.emplace().transmission = transmission;
+    addQuad(scene, addMaterial(scene, sheet), {-1, 1, 1}, {2, 0, 0}, {0, 0, -2});
+    addQuad(scene, addMaterial(scene, lambert(Rgb(1))), {-3, 0, 3}, {6, 0, 0}, {0, 0, -6});
+    const Image white = constantProbe({16, 8}, Rgb(1));
+    const RenderSettings settings = smallRender(12, 12, 64, 40);
+    EXPECT_NEAR(meanColor(renderTop(scene, white, settings, true)).y, 1, 0.03) << transmission;
+  }
+}
+
 // Two tinted sheets at one distance under a white ceiling, and a lamp flush with a sheet: the light
 // from behind the first of the surfaces.
 TEST(SlowIrradianceCache, MeetsAllSurfacesOfAPlace) {

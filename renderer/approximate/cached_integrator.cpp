@@ -32,7 +32,7 @@ Sample CachedIntegrator::sample(const CameraSample& camera, PathContext& context
   if (first->surface.material->emits())
     radiance += tracer_.foundEmission(state, first->surface, first->instance);
   Bsdf diffuseLobes = bsdf, otherLobes = bsdf;
-  diffuseLobes.keepOnly({.diffuse = true, .specular = false});
+  diffuseLobes.keepOnly({.diffuse = true, .specular = false, .straight = false});
   otherLobes.keepOnly({.diffuse = false, .specular = true});
   radiance += direct_.reflected(state, first->surface, diffuseLobes, context);
   context.sampler.startVertex(0);

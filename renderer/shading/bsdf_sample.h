@@ -75,9 +75,10 @@ class MapLobes {
   size_t count_ = 0;
 };
 
-// The lobes that a BSDF keeps where a depth limit has been reached (PathSettings).
+// The lobes that a BSDF keeps where a depth limit has been reached (PathSettings). `straight`:
+// those of smooth sheets, which no limit by kind concerns.
 struct KeptLobes {
-  bool diffuse = true, specular = true;
+  bool diffuse = true, specular = true, straight = true;
 };
 
 }  // namespace chromeball

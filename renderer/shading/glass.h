@@ -84,7 +84,7 @@ class Sheet {
     lobes.add({weight * fraction_, -wo_, false, smooth_ ? 0 : std::sqrt(alpha_)});
   }
   void keepOnly(KeptLobes kept) {
-    if (!kept.specular && !smooth_) fraction_ = Rgb(0);
+    if (!(smooth_ ? kept.straight : kept.specular)) fraction_ = Rgb(0);
   }
 
  private:

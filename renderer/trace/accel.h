@@ -20,6 +20,7 @@ struct RTCSceneTy;
 namespace chromeball {
 
 class BuiltGeometry;
+class NearInstances;
 struct FilterUse;
 struct HitArrays;
 struct RayArrays;
@@ -134,7 +135,8 @@ class Accel {
   std::vector<RayMask> masks_;  // by instance; empty: all
   std::shared_ptr<BuiltGeometry> built_;
   RTCSceneTy* scene_ = nullptr;
-  size_t widest_ = 8;  // packet that the processor has vectors for
+  std::unique_ptr<NearInstances> nearInstances_;  // null: nothing is traced as an instance
+  size_t widest_ = 8;                             // packet that the processor has vectors for
   bool hasFilter_ = false, hasAlpha_ = false, needsMedia_ = false;
 };
 

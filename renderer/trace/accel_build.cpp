@@ -12,6 +12,7 @@
 #include "trace/accel.h"
 #include "trace/built_geometry.h"
 #include "trace/filter.h"
+#include "trace/near_instances.h"
 
 namespace chromeball {
 namespace {
@@ -142,17 +143,20 @@ void Accel::build() {
   for (const Instance& instance : scene.instances) ++uses[size_t(instance.mesh)];
   const std::vector<uint32_t> still = staticInstances(scene, uses);
 
-  const auto geometryOf = [&](const Instance& instance) -> RTCGeometry {
-    if (instance.motion)
-      return instance.motion->isRigid()
-                 ? newMovingInstance(built_->device(), built_->meshScene(instance.mesh),
-                                     *instance.motion)
-                 : built_->newMovingGeometry(instance);
-    if (uses[size_t(instance.mesh)] == 1 && !instance.toWorld)
-      return built_->newGeometry(instance.mesh);
-    return newInstance(built_->device(), built_->meshScene(instance.mesh),
-                       instance.toWorld.value_or(Transform{}));
+  const auto isTracedAsInstance = [&](const Instance& instance) {
+    if (instance.motion) return instance.motion->isRigid();
+    return uses[size_t(instance.mesh)] > 1 || instance.toWorld;
   };
+  const auto geometryOf = [&](const Instance& instance) -> RTCGeometry {
+    if (!isTracedAsInstance(instance))
+      return instance.motion ? built_->newMovingGeometry(instance)
+                             : built_->newGeometry(instance.mesh);
+    const RTCScene mesh = built_->meshScene(instance.mesh);
+    return instance.motion
+               ? newMovingInstance(built_->device(), mesh, *instance.motion)
+               : newInstance(built_->device(), mesh, instance.toWorld.value_or(Transform{}));
+  };
+  std::vector<NearInstances::Placed> placed;
   const std::vector<bool> redundant = redundantInstances(scene, uses, *this);
   scene_ = built_->newScene();
   if (rtcGetDeviceProperty(built_->device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED))
@@ -160,13 +164,18 @@ void Accel::build() {
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     if (redundant[i] || std::ranges::binary_search(still, uint32_t(i))) continue;
     endIfCancelled();
-    BuiltGeometry::attach(scene_, geometryOf(scene.instances[i]), uint32_t(i), mask(uint32_t(i)));
+    const Instance& instance = scene.instances[i];
+    BuiltGeometry::attach(scene_, geometryOf(instance), uint32_t(i), mask(uint32_t(i)));
+    if (isTracedAsInstance(instance))
+      placed.push_back({uint32_t(i), built_->meshScene(instance.mesh)});
   }
   if (!still.empty())
     BuiltGeometry::attach(
         scene_, newInstance(built_->device(), built_->staticScene(still, masks_), Transform{}),
         uint32_t(scene.instances.size()), kAllInstances);
   BuiltGeometry::commit(scene_);
+  if (!placed.empty())
+    nearInstances_ = std::make_unique<NearInstances>(built_->device(), scene, std::move(placed));
 }
 
 }  // namespace chromeball

@@ -5,6 +5,7 @@
 
 #include "trace/accel.h"
 #include "trace/filter.h"
+#include "trace/near_instances.h"
 
 namespace chromeball {
 namespace {
@@ -104,18 +105,19 @@ void testTriangle(const CoincidentSearch& s, uint32_t instanceIndex, uint32_t tr
 }
 
 struct NearSearch {
-  const Scene& scene;
+  uint32_t instances;  // in the scene
   bool (*visit)(uint32_t, uint32_t, void*);
   void* visitor;
+  bool goesOn = true;
 };
 
+// Those that are traced as instances, NearInstances finds.
 bool visitPrimitive(RTCPointQueryFunctionArguments* arguments) {
-  const auto& search = *static_cast<const NearSearch*>(arguments->userPtr);
-  const uint32_t top = arguments->context->instStackSize > 0 ? arguments->context->instID[0]
-                                                             : RTC_INVALID_GEOMETRY_ID;
-  if (search.visit(instanceOf(search.scene, top, arguments->geomID), arguments->primID,
-                   search.visitor))
-    return false;  // the radius stays
+  auto& search = *static_cast<NearSearch*>(arguments->userPtr);
+  const RTCPointQueryContext& context = *arguments->context;
+  if (context.instStackSize > 0 && context.instID[0] < search.instances) return false;
+  search.goesOn = search.visit(arguments->geomID, arguments->primID, search.visitor);
+  if (search.goesOn) return false;  // the radius stays
   arguments->query->radius = 0;
   return true;
 }
@@ -124,11 +126,12 @@ bool visitPrimitive(RTCPointQueryFunctionArguments* arguments) {
 
 void Accel::visitNear(const vec3& point, float radius, float time, VisitTriangle visit,
                       void* visitor) const {
-  NearSearch search{described_, visit, visitor};
+  NearSearch search{uint32_t(described_.instances.size()), visit, visitor};
   RTCPointQuery query{point.x, point.y, point.z, time, radius};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(scene_, &query, &context, visitPrimitive, &search);
+  if (nearInstances_ && search.goesOn) nearInstances_->search(point, radius, time, visit, visitor);
 }
 
 void Accel::visitCoincident(const Ray& ray, const Hit& hit, const Surface& surface, uint32_t key,
