@@ -78,8 +78,7 @@ Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale, bool
                "{} {} black, since the objects take more light there than the plate has: "
                "the light is too bright for the plate, or falls on things that the local scene "
                "lacks; mode = \"ratio\" darkens the plate by a factor instead",
-               report.darkerThanBlack,
-               report.darkerThanBlack == 1 ? "pixel is" : "pixels are");
+               report.darkerThanBlack, report.darkerThanBlack == 1 ? "pixel is" : "pixels are");
   return messages;
 }
 
