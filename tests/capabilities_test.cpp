@@ -111,7 +111,7 @@ const std::map<std::string_view, std::function<void(D&)>> kBring = {
     {"no layer of bent normals", [](D&) {}},
     {"no irradiance cache", [](D&) {}},
     {"a closed shutter", [](D&) {}},
-    {"neither frames nor an open shutter", [](D&) {}},
+    {"neither frames nor a shutter", [](D&) {}},
     {"no checkpoint", [](D&) {}},
 };
 

@@ -143,7 +143,7 @@ constexpr Feature kNoCache{"no irradiance cache", "render.irradiance_cache",
                            [](const D& d) { return !d.settings.cacheError; }};
 constexpr Feature kNoShutter{"a closed shutter", "camera.shutter",
                              [](const D& d) { return !d.camera.shutter; }};
-constexpr Feature kNoFrames{"neither frames nor an open shutter", "camera.shutter", [](const D& d) {
+constexpr Feature kNoFrames{"neither frames nor a shutter", "camera.shutter", [](const D& d) {
                               return !d.run.isOfFrames && !d.origins.has("camera.shutter");
                             }};
 constexpr Feature kNoCheckpoint{"no checkpoint", "checkpoint",
@@ -201,7 +201,7 @@ constexpr std::array kConflicts = {
     Conflict{kCache, kNoLightSamples,
              "not with a strategy without light samples; leave one of the two out"},
     Conflict{kOrbitStep, kNoShutter, "needs an open shutter"},
-    Conflict{kFps, kNoFrames, "needs frames or an open shutter"},
+    Conflict{kFps, kNoFrames, "needs frames or a shutter"},
     Conflict{kResume, kNoCheckpoint, "needs a checkpoint"},
     Conflict{kCheckpointEvery, kNoCheckpoint, "needs a checkpoint"},
     Conflict{kShard, kTwoPass, kNotTwo},

@@ -60,8 +60,7 @@ void check(const Settings& all, const Settings& given) {
   if (!given.has("frames")) {
     for (const char* name : {"frame", "overwrite", "seed-per-frame", "probe-sequence"})
       refuse(name, "needs --frames FIRST:LAST");
-    const bool opens = all.has("camera.shutter") && all.get<double>("camera.shutter") > 0;
-    if (!opens) refuse("fps", "needs --frames FIRST:LAST or an open --shutter");
+    if (!all.has("camera.shutter")) refuse("fps", "needs --frames FIRST:LAST or --shutter");
     return;
   }
   refuse("model.time", "frames have times of their own; leave one of the two out");
