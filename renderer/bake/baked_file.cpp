@@ -123,10 +123,9 @@ class Writer {
       if (sets.empty()) sets.push_back(map);
       sets.insert(sets.begin() + kLightmapSet, map);
     }
-    constexpr size_t kMostSets = 16;  // that our reader accepts
-    if (sets.size() > kMostSets)
+    if (sets.size() > size_t(kMaxUvSet) + 1)
       throwInput("the model uses TEXCOORD_{}, and the lightmap needs a set besides; the most is {}",
-                 sets.size() - 2, kMostSets - 1);
+                 sets.size() - 2, kMaxUvSet);
     for (size_t i = 0; i < sets.size(); ++i) attributes[fmt::format("TEXCOORD_{}", i)] = sets[i];
   }
 

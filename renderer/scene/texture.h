@@ -53,11 +53,13 @@ struct Texture {
 // Linear RGBA of one texel.
 vec4 linearTexel(const TexelGrid& grid, bool srgb, int x, int y);
 
+inline constexpr int kMaxUvSet = 15;  // of TEXCOORD_n
+
 // A material's use of a texture: its index, its UV set and its transform (KHR_texture_transform:
 // uv' = offset + R(rotation) S(scale) uv).
 struct TextureSlot {
-  int texture = -1;  // index into Scene::textures; -1: none
-  int uvSet = 0;
+  int texture = -1;                              // index into Scene::textures; -1: none
+  int uvSet = 0;                                 // 0 to kMaxUvSet
   vec2 uvRow0{1, 0}, uvRow1{0, 1}, uvOffset{0};  // uv' = (dot(row0,uv), dot(row1,uv)) + offset
 
   explicit operator bool() const { return texture >= 0; }

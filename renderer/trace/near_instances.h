@@ -12,7 +12,7 @@ struct RTCSceneTy;
 
 namespace chromeball {
 
-// Embree (3.13, 4.3) searches an instance with the radius of world space, which misses triangles
+// Embree 3.13 searches an instance with the radius of world space, which misses triangles
 // where a scale below 1 makes it less than the rounding of the instance's own coordinates. This
 // searches the instances' boxes, and then each instance in its own space.
 class NearInstances {

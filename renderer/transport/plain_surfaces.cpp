@@ -33,6 +33,7 @@ PlainSurfaces::PlainSurfaces(const Scene& scene) {
                       mesh.triangles.data(), mesh.positions.data(),
                       mesh.normals.empty() ? nullptr : mesh.normals.data()});
     any_ |= kind != Kind::Other;
+    anyEmits_ |= kind != Kind::Other && material.emits();
   }
 }
 

@@ -36,11 +36,12 @@ class PlainSurfaces {
   // Of parts that are uniform.
   const MaterialPoint& at(int material) const { return points_[size_t(material)]; }
   bool any() const { return any_; }
+  bool anyEmits() const { return anyEmits_; }
 
  private:
   std::vector<Part> parts_;            // by instance
   std::vector<MaterialPoint> points_;  // by material
-  bool any_ = false;
+  bool any_ = false, anyEmits_ = false;
 };
 
 }  // namespace chromeball

@@ -28,7 +28,7 @@ class SceneLightLanes {
              std::span<Rgb> radiances);
 
  private:
-  std::vector<DirectionSample> drawn_, samples_;    // scratch; of all vertices
+  std::vector<DirectionSample> samples_;            // of all vertices
   std::array<size_t, kMostInArrays + 1> begins_{};  // of the samples of each vertex
 
   struct Shadow {

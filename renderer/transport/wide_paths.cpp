@@ -233,7 +233,7 @@ void WidePaths::leaveHidden(const LaneTask& task) {
 
 // As PathTracer::foundEmission().
 void WidePaths::addEmission(const LaneTask& task) {
-  if (task.world().sources.all.empty()) return;
+  if (!task.world().plain.anyEmits()) return;
   for (size_t k = 0; k < paths_->size; ++k) {
     if (!partOf(task, k).emits || isHidden(k)) continue;
     const LightPoint from{paths_->position.at(k), paths_->normal.at(k), nullptr, depth_ - 1};

@@ -90,7 +90,6 @@ void checkExtended(const MaterialCheck& check, const ExtendedMaterial& m) {
 }
 
 void checkSlots(const Material& material, size_t textures) {
-  constexpr int kMaxUvSet = 15;
   Material copy = material;  // textureSlots() allows changes
   for (const TextureSlot* slot : textureSlots(copy)) {
     if (!*slot) continue;

@@ -13,7 +13,6 @@ namespace {
 
 using tinygltf::Value;
 
-constexpr int kMaxUvSet = 15;
 constexpr float kLargest = std::numeric_limits<float>::max();
 
 Wrap readWrap(const GltfFile& file, int code, const std::string& where) {
