@@ -178,7 +178,7 @@ def test_a_matte_square_has_the_radiance_of_its_irradiance(camera):
     (dict(plate="a.png"), r"unknown keyword `plate`; it is a key of \[composite\]: give it in the scene"),
     (dict(ground_height=1), r"unknown keyword `ground_height`; it is a key of"),
     (dict(visible=False), r"it is a key of \[\[light\]\]"),
-    (dict(fps=30), r"render\(\): fps: needs frames or an open shutter; see shutter"),
+    (dict(fps=30), r"render\(\): fps: needs frames or a shutter; see shutter"),
     (dict(crop=(0, 0, 4)), r"crop: \(0, 0, 4\) should be \(x, y, width, height\)"),
     (dict(crop=(0, 0, 4, 2.5)), r"crop: 2.5 should be a whole number"),
     (dict(strategy="\ud800"), r"strategy: '.ud800' is no valid text"),
