@@ -53,10 +53,25 @@ HalfPlanes halvesOf(const HalvedImage& image, float scale) {
   return halves;
 }
 
-Component componentOf(HalfPlanes halves, Plane used) {
-  Component component{std::move(halves), {}, std::move(used)};
+// Whether the noise of a pixel is far below its light. Not where all is black: the samples may have
+// missed what lights it.
+bool isClean(const Component& component, int x, int y) {
+  float size = 0, variance = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    const float sum = component.halves[0][c].at(x, y) + component.halves[1][c].at(x, y);
+    size += sum * sum / 4;
+    variance += component.variance[c].at(x, y);
+  }
+  return size > 0 && isNegligible(variance, size);
+}
+
+// `empty`: not 0 where nothing is seen.
+Component componentOf(HalfPlanes halves, const Plane& empty) {
+  Component component{std::move(halves), {}, {}};
   for (size_t c = 0; c < 3; ++c)
     component.variance[c] = varianceOf(component.halves[0][c], component.halves[1][c]);
+  component.wanted = makePlaneLike(
+      empty, [&](int x, int y) { return float(empty.at(x, y) == 0 && !isClean(component, x, y)); });
   return component;
 }
 
@@ -178,10 +193,10 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
     const RgbPlanes noise = noiseOf(part, scale);
     HalfPlanes halves = halvesOf(part, scale);
     const Plane squaredBias = limitFireflies(halves);
-    const Plane used = makePlaneLike(
-        squaredBias, [&](int x, int y) { return isEmpty(input, part, x, y) ? 0.0f : 1.0f; });
+    const Plane empty =
+        makePlaneLike(squaredBias, [&](int x, int y) { return float(isEmpty(input, part, x, y)); });
     const Selection found = denoise(
-        componentOf(std::move(halves), used), features, scratch,
+        componentOf(std::move(halves), empty), features, scratch,
         [&](double fraction) { progress((before + fraction) / count); }, stop);
     if (stop) return std::nullopt;
     const int width = part.mean.width, height = part.mean.height;
@@ -189,7 +204,7 @@ std::optional<std::vector<DenoisedPart>> denoise(const DenoiseInput& input,
     DenoisedPart& result = results.back();
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        if (used.at(x, y) == 0) continue;
+        if (empty.at(x, y) != 0) continue;
         for (int c = 0; c < 3; ++c) {
           // The light of fireflies is missing; without the limit their noise would be there.
           const float known = std::max(found.error[size_t(c)].at(x, y), 0.0f);

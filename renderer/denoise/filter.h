@@ -12,11 +12,17 @@ namespace chromeball {
 
 using HalfPlanes = std::array<RgbPlanes, 2>;
 
+// Noise so far below the value needs no filter. Both squared, and summed over channels.
+inline bool isNegligible(float variance, float value) {
+  constexpr float kNegligible = 0.002f;  // relative
+  return variance <= kNegligible * kNegligible * value;
+}
+
 // Part of the light of an image.
 struct Component {
   HalfPlanes halves;
   RgbPlanes variance;  // of the mean of both halves
-  Plane used;          // 0: the result of this pixel does not matter
+  Plane wanted;        // 0: this pixel needs no filter
 };
 
 // The input of weights[h]: half h.
