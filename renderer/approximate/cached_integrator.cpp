@@ -30,7 +30,7 @@ Sample CachedIntegrator::sample(const CameraSample& camera, PathContext& context
   ++context.counts.camera;
   Rgb radiance = *diffuse;
   if (first->surface.material->emits())
-    radiance += tracer_.foundEmission(state, first->surface, first->instance);
+    radiance += tracer_.foundEmission(state, first->surface, first->hit);
   Bsdf diffuseLobes = bsdf, otherLobes = bsdf;
   diffuseLobes.keepOnly({.diffuse = true, .specular = false, .straight = false});
   otherLobes.keepOnly({.diffuse = false, .specular = true});

@@ -80,7 +80,7 @@ class RepaintedIntegrator : public SingleIntegrator {
     if (!first) return Rgb(0);
     if (first->surface.material->unlit) return baseColor_;
     if (first->surface.material->emits())
-      state.radiance += tracer_.foundEmission(state, first->surface, first->instance);
+      state.radiance += tracer_.foundEmission(state, first->surface, first->hit);
     first->material.baseColor = baseColor_;
     return tracer_.reflected(state, first->surface, first->bsdf(tracer_, state), context);
   }

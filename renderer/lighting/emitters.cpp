@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/emitters.h"
 
+#include <optional>
+
+#include "lighting/emission_map.h"
 #include "math/warp.h"
 #include "scene/placed_triangles.h"
 #include "scene/surface.h"
@@ -35,14 +38,26 @@ double meanAlpha(const Scene& scene, const Material& m) {
   return std::max(mean, kMin);
 }
 
-// Mean emitted luminance of a material; positive if it emits anywhere.
-double meanEmission(const Scene& scene, const Material& m) {
-  if (m.unlit || isBlack(m.emission)) return 0;
-  const auto emitted = [&](const vec4& texel) { return luminance(m.emission * Rgb(texel)); };
-  const double mean = m.emissiveTexture ? meanOfTexels(scene, m.emissiveTexture, emitted)
-                                        : double(luminance(m.emission));
-  return mean * meanAlpha(scene, m);
-}
+// Emitted luminance x mean alpha of the triangles of a material.
+class Emission {
+ public:
+  Emission(const Scene& scene, const Material& material) {
+    if (material.unlit || isBlack(material.emission)) return;
+    alpha_ = meanAlpha(scene, material);
+    luminance_ = double(luminance(material.emission));
+    if (material.emissiveTexture) map_.emplace(scene, material);
+  }
+
+  bool isBlackEverywhere() const { return !(alpha_ * luminance_ > 0); }
+  bool differs() const { return map_.has_value(); }  // between triangles
+  double of(const Mesh& mesh, const Triangle& triangle) const {
+    return alpha_ * (map_ ? map_->mean(mesh, triangle) : luminance_);
+  }
+
+ private:
+  double alpha_ = 0, luminance_ = 0;
+  std::optional<EmissionMap> map_;
+};
 
 // The end of a shadow ray from `origin` towards a point of the surface that faces it: off surfaces
 // in its plane, and farther if the ray is long. The rounding errors of the ray grow with its
@@ -55,40 +70,52 @@ vec3 endOfRay(const Surface& surface, float planeOffset, const vec3& origin) {
 
 }  // namespace
 
-std::unique_ptr<Emitters> Emitters::make(const Scene& scene) {
-  std::vector<double> radiances;
-  for (const Material& material : scene.materials)
-    radiances.push_back(meanEmission(scene, material));
-
+struct Emitters::Found {
   std::vector<EmissiveTriangle> triangles;
-  std::vector<double> powers;
+  std::vector<double> powers;  // of each
+  std::vector<Densities> densities;
+  std::vector<double> radiances{0};  // that densities refer to; the first: of what does not emit
+};
+
+std::unique_ptr<Emitters> Emitters::make(const Scene& scene) {
+  std::vector<Emission> emissions;
+  for (const Material& material : scene.materials) emissions.emplace_back(scene, material);
+
+  Found found;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    const double radiance = radiances[instance.material];
-    if (!(radiance > 0)) continue;
+    const Emission& emission = emissions[size_t(instance.material)];
+    if (emission.isBlackEverywhere() || mesh.triangles.empty()) {
+      found.densities.push_back({0, false});
+      continue;
+    }
+    found.densities.push_back({found.radiances.size(), emission.differs()});
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const vec3 p0 = instance.point(mesh.positions[mesh.triangles[t].x]);
-      const vec3 p1 = instance.point(mesh.positions[mesh.triangles[t].y]);
-      const vec3 p2 = instance.point(mesh.positions[mesh.triangles[t].z]);
+      const Triangle& triangle = mesh.triangles[t];
+      const double radiance = emission.of(mesh, triangle);
+      if (t == 0 || emission.differs()) found.radiances.push_back(radiance);
+      const vec3 p0 = instance.point(mesh.positions[triangle.x]);
+      const vec3 p1 = instance.point(mesh.positions[triangle.y]);
+      const vec3 p2 = instance.point(mesh.positions[triangle.z]);
       const double area = 0.5 * glm::length(glm::cross(glm::dvec3(p1) - glm::dvec3(p0),
                                                        glm::dvec3(p2) - glm::dvec3(p0)));
-      if (!(area > 0)) continue;
-      triangles.push_back({i, t, p0, p1, p2});
-      powers.push_back(radiance * area);
+      if (!(radiance * area > 0)) continue;
+      found.triangles.push_back({i, t, p0, p1, p2});
+      found.powers.push_back(radiance * area);
     }
   }
-  if (triangles.empty()) return nullptr;
-  return std::unique_ptr<Emitters>(new Emitters(scene, std::move(triangles), powers, radiances));
+  if (found.triangles.empty()) return nullptr;
+  return std::unique_ptr<Emitters>(new Emitters(scene, std::move(found)));
 }
 
-Emitters::Emitters(const Scene& scene, std::vector<EmissiveTriangle> triangles,
-                   const std::vector<double>& powers, const std::vector<double>& radiances)
+Emitters::Emitters(const Scene& scene, Found found)
     : scene_(scene),
-      triangles_(std::move(triangles)),
+      triangles_(std::move(found.triangles)),
+      densities_(std::move(found.densities)),
       choice_(1, int(triangles_.size()), std::max(CdfRows::kGuide, int(triangles_.size()))) {
-  const double total = choice_.setRow(0, powers);
-  for (double radiance : radiances) areaPdf_.push_back(float(radiance / total));
+  const double total = choice_.setRow(0, found.powers);
+  for (double radiance : found.radiances) areaPdfs_.push_back(float(radiance / total));
 }
 
 Emitters::Point Emitters::choose(double choice, float v) const {
@@ -125,13 +152,17 @@ void Emitters::sample(const LightPoint& point, const PixelSampler& sampler,
   // Plain BSDFs transmit no light: saves the surface of a sample that they would drop.
   const bool isLayered = point.bsdf && point.bsdf->isLayered();
   if (!(distance > 0) || !(glm::dot(wi, point.normal) > 0 || isLayered)) return;
+  if (!scene_.materials[size_t(instance.material)].doubleSided &&
+      isFromBehind(scene_, instance, emitter.triangle, wi, point.time))
+    return;
   const Surface surface =
       surfaceAt(scene_, instance, emitter.triangle, emitter.barycentric, -wi, 0, point.time);
   const float cosine = glm::dot(surface.geometricNormal, -wi);
   const Rgb radiance = emittedRadiance(scene_, instance, surface, -wi) *
                        surfaceAlpha(scene_, instance, emitter.triangle, emitter.barycentric);
   if (isBlack(radiance) || !(cosine > 0)) return;
-  const float density = pdf(instance.material, distance, cosine) * areaRatio(surface, instance);
+  const float density =
+      pdf(emitter.instance, emitter.triangle, distance, cosine) * areaRatio(surface, instance);
   if (!(density > 0)) return;
   const float offset =
       planeOffset(scene_, instance, emitter.triangle, surface.geometricNormal, point.time);
@@ -143,15 +174,15 @@ void Emitters::sample(const LightPoint& point, const PixelSampler& sampler,
                          endOfRay(surface, offset, point.position)}});
 }
 
-float Emitters::pdfOfHit(const LightPoint& point, const Surface& surface,
-                         const Instance& instance) const {
+float Emitters::pdfOfHit(const LightPoint& point, const Surface& surface, uint32_t instance,
+                         uint32_t triangle) const {
   const vec3 to = surface.position - point.position;
   const float distance = glm::length(to);
   if (distance == 0) return 0;  // of surfaces at one place (transport/place.h), as sample()
   constexpr float kGrazing = 1e-12f;
   const float cosine = -glm::dot(surface.geometricNormal, to) / distance;
-  return pdf(instance.material, distance, std::max(cosine, kGrazing)) *
-         areaRatio(surface, instance);
+  return pdf(instance, triangle, distance, std::max(cosine, kGrazing)) *
+         areaRatio(surface, scene_.instances[instance]);
 }
 
 }  // namespace chromeball

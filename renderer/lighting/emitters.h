@@ -11,9 +11,10 @@
 
 namespace chromeball {
 
-// Every triangle whose material emits, chosen by power (mean emitted luminance x mean alpha x area)
-// and sampled uniformly over its area. The pdf over area is then the same for all points of a
-// material: its mean luminance x alpha / total.
+// Every triangle that emits, chosen by power (its mean emitted luminance x mean alpha of the
+// material x area) and sampled uniformly over its area. The pdf over area is then its luminance x
+// alpha / total. Of a texture, the mean is an estimate (emission_map.h); triangles all of whose
+// texels are black are never chosen.
 //
 // While the shutter is open, a triangle is chosen by the area that it has when it opens.
 //
@@ -26,8 +27,8 @@ class Emitters : public LightSource {
 
   void sample(const LightPoint& point, const PixelSampler& sampler,
               std::vector<DirectionSample>& out) const override;
-  float pdfOfHit(const LightPoint& point, const Surface& surface,
-                 const Instance& instance) const override;
+  float pdfOfHit(const LightPoint& point, const Surface& surface, uint32_t instance,
+                 uint32_t triangle) const override;
   std::vector<std::string> groups() const override { return {}; }
 
   struct Point {
@@ -39,26 +40,37 @@ class Emitters : public LightSource {
   // million triangles can be chosen.
   Point choose(double choice, float v) const;
 
-  // Pdf over solid angle of sampling a point of `material` at a distance of `distance` metres, with
-  // cosine `cosine` (> 0) at the emitter.
-  float pdf(int material, float distance, float cosine) const {
-    return areaPdf_[material] * distance * distance / cosine;
+  // Pdf over solid angle of sampling a point of a triangle at a distance of `distance` metres, with
+  // cosine `cosine` (> 0) at the emitter. 0 of triangles that do not emit.
+  float pdf(size_t instance, size_t triangle, float distance, float cosine) const {
+    return areaPdf(instance, triangle) * distance * distance / cosine;
   }
 
  private:
   vec3 placeOf(const Point& point, const Instance& instance, float time) const;
+  // 1/m^2; 0 where nothing emits.
+  float areaPdf(size_t instance, size_t triangle) const {
+    const Densities& of = densities_[instance];
+    return areaPdfs_[of.first + (of.areByTriangle ? triangle : 0)];
+  }
   // The ratio of the area by which a triangle was chosen to its area at the surface's time.
   float areaRatio(const Surface& surface, const Instance& instance) const;
   struct EmissiveTriangle {
     uint32_t instance, triangle;
     vec3 p0, p1, p2;
   };
-  Emitters(const Scene& scene, std::vector<EmissiveTriangle> triangles,
-           const std::vector<double>& powers, const std::vector<double>& radiances);
+  // Of an instance, in areaPdfs_: one number, or one for each triangle where they differ.
+  struct Densities {
+    size_t first;
+    bool areByTriangle;
+  };
+  struct Found;
+  Emitters(const Scene& scene, Found found);
 
   const Scene& scene_;
   std::vector<EmissiveTriangle> triangles_;
-  std::vector<float> areaPdf_;  // by material, 1/m^2; 0 where it does not emit
+  std::vector<Densities> densities_;
+  std::vector<float> areaPdfs_;
   CdfRows choice_;
 };
 

@@ -76,8 +76,12 @@ class LightSource {
   virtual Escaped escaped(const LightPoint&, const vec3&) const { return {Rgb(0), 0}; }
 
   // The pdf of sample(), over solid angle, for the point of a surface in the scene that a
-  // BSDF-sampled ray from `point` hits. Its radiance is emittedRadiance() (scene/surface.h).
-  virtual float pdfOfHit(const LightPoint&, const Surface&, const Instance&) const { return 0; }
+  // BSDF-sampled ray from `point` hits; `instance` and `triangle` as in Hit. Its radiance is
+  // emittedRadiance() (scene/surface.h) without texture filtering, as sample() has it.
+  virtual float pdfOfHit(const LightPoint&, const Surface&, uint32_t /*instance*/,
+                         uint32_t /*triangle*/) const {
+    return 0;
+  }
 
   // escaped() for up to kMaxMany rays, or batch(). Strategies override it where table reads of
   // several rays can overlap.

@@ -32,7 +32,7 @@ std::optional<FirstSurface> firstSurface(const PathTracer& tracer, PathState& st
   const Instance& instance = scene.instances[visible->instance];
   state.length += visible->distance;
   const float crossSection = state.beam ? state.beam.crossSection(state.length) : 0;
-  FirstSurface found(scene, instance,
+  FirstSurface found(scene, *visible,
                      surfaceAt(scene, instance, visible->triangle, visible->barycentric,
                                -state.ray.direction, crossSection, state.ray.time));
   if (state.first)
@@ -52,7 +52,7 @@ std::optional<FirstSurface> firstReflector(const PathTracer& tracer, PathState& 
     return {};
   }
   const Material& material = *first->surface.material;
-  if (material.emits()) radiance += tracer.foundEmission(state, first->surface, first->instance);
+  if (material.emits()) radiance += tracer.foundEmission(state, first->surface, first->hit);
   if (material.unlit) return {};
   return first;
 }

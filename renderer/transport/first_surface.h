@@ -7,12 +7,16 @@
 namespace chromeball {
 
 struct FirstSurface {
+  Hit hit;
   const Instance& instance;
   Surface surface;
   MaterialPoint material;
 
-  FirstSurface(const Scene& scene, const Instance& hit, const Surface& point)
-      : instance(hit), surface(point), material(materialAt(scene, surface)) {}
+  FirstSurface(const Scene& scene, const Hit& found, const Surface& point)
+      : hit(found),
+        instance(scene.instances[found.instance]),
+        surface(point),
+        material(materialAt(scene, surface)) {}
 
   Bsdf bsdf(const PathTracer& tracer, const PathState& state) const;
 };

@@ -88,21 +88,24 @@ void PathState::leave(const Surface& surface, const vec3& wi) {
 }
 
 Rgb PathTracer::foundEmission(const PathState& state, const Surface& surface,
-                              const Instance& instance) const {
+                              const Hit& hit) const {
   return state.throughput * foundEmission(state.from, state.isDelta ? 0 : state.pdf,
-                                          state.ray.direction, surface, instance);
+                                          state.ray.direction, surface, hit);
 }
 
 Rgb PathTracer::foundEmission(const LightPoint& from, float pdf, const vec3& direction,
-                              const Surface& surface, const Instance& instance) const {
-  float weight = 1;
-  if (!surface.material->unlit && pdf != 0) {
-    float lightPdf = 0;
-    for (const auto& source : world_.sources.all)
-      lightPdf += source->pdfOfHit(from, surface, instance);
-    weight = bsdfSampleWeight(settings_.mis, pdf, lightPdf);
-  }
-  return emittedRadiance(world_.scene, instance, surface, -direction) * weight;
+                              const Surface& surface, const Hit& hit) const {
+  const Instance& instance = world_.scene.instances[hit.instance];
+  if (surface.material->unlit || pdf == 0)
+    return emittedRadiance(world_.scene, instance, surface, -direction);
+  float lightPdf = 0;
+  for (const auto& source : world_.sources.all)
+    lightPdf += source->pdfOfHit(from, surface, hit.instance, hit.triangle);
+  // A texture filter would have light where light samples find none.
+  Surface unfiltered = surface;
+  unfiltered.footprint = 0;
+  return emittedRadiance(world_.scene, instance, unfiltered, -direction) *
+         bsdfSampleWeight(settings_.mis, pdf, lightPdf);
 }
 
 // Each bounce that the guide does not choose has 1 / (1 - fraction) of the BSDF's weight: on long
@@ -247,7 +250,7 @@ bool PathTracer::vertex(PathState& state, const std::optional<Hit>& hit,
     if (state.place) return vertex(state, met, context);
   }
   if (surface.material->emits()) {
-    const Rgb found = foundEmission(state, surface, instance);
+    const Rgb found = foundEmission(state, surface, *hit);
     state.radiance += found;
     if (context.groups) [[unlikely]]
       context.groups->addEmitted(instance, found);

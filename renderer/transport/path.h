@@ -84,11 +84,11 @@ class PathTracer {
                PathContext& context) const;
 
   // The MIS-weighted contribution of the emission of `surface` to state.radiance.
-  Rgb foundEmission(const PathState& state, const Surface& surface, const Instance& instance) const;
+  Rgb foundEmission(const PathState& state, const Surface& surface, const Hit& hit) const;
   // The same for throughput 1. `pdf`: of the ray's direction at `from`; 0: light samples could not
   // find it.
   Rgb foundEmission(const LightPoint& from, float pdf, const vec3& direction,
-                    const Surface& surface, const Instance& instance) const;
+                    const Surface& surface, const Hit& hit) const;
 
   // At a depth limit, for a fraction of the paths: adds an estimate of the light beyond the limit
   // to context.depthCut. state.radiance does not change.

@@ -135,7 +135,7 @@ class PhotonTracer {
     const float flux = luminance(emittedRadiance(world_.scene, instance, surface, direction)) *
                        sides * kPi *
                        surfaceAlpha(world_.scene, instance, lamp.triangle, lamp.barycentric) /
-                       world_.sources.emitters->pdf(instance.material, 1, 1);
+                       world_.sources.emitters->pdf(lamp.instance, lamp.triangle, 1, 1);
     if (!(flux > 0)) {  // a black texel of an emissive texture
       ++out.rays;       // so that the budget ends
       return;

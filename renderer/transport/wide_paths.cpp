@@ -237,11 +237,10 @@ void WidePaths::addEmission(const LaneTask& task) {
   for (size_t k = 0; k < paths_->size; ++k) {
     if (!partOf(task, k).emits || isHidden(k)) continue;
     const LightPoint from{paths_->position.at(k), paths_->normal.at(k), nullptr, depth_ - 1};
-    const Instance& instance = task.world().scene.instances[size_t(paths_->hits.instance[k])];
     task.radiances[size_t(paths_->id[k])] +=
         paths_->throughput.at(k) *
         task.tracer.foundEmission(from, paths_->pdf[k], paths_->rays.direction.at(k),
-                                  scatter_.vertices().surface(k), instance);
+                                  scatter_.vertices().surface(k), *paths_->hits.at(k));
   }
 }
 
