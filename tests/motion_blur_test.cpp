@@ -473,7 +473,7 @@ TEST(MotionBlur, RefusesWhatHasNoMeaning) {
   const auto refuses = [&](const Words& options, const std::string& why) {
     expectError(words(square.path(), options, out / "a.#.exr"), why);
   };
-  refuses({"--fps", "12"}, "--fps: needs --frames FIRST:LAST or --shutter");
+  refuses({"--fps", "12"}, "--fps: needs --frames A:B or --shutter");
   refuses({"--shutter", "-1"}, "--shutter");
   refuses({"--shutter", "nan"}, "--shutter");
   refuses({"--shutter", "1", "--shutter-steps", "0"}, "--shutter-steps");

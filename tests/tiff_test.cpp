@@ -425,6 +425,25 @@ TEST_F(Tiff, AssociatedCodesAreDecodedWithoutTheirAlpha) {
   EXPECT_EQ(of(std::string("\x00\x00\x00\x00", 4), 1), std::vector<float>(4, 0.0f));
 }
 
+// Codes above their alpha are not multiplied by it; neither are those beside a fourth sample that
+// the file does not explain.
+TEST_F(Tiff, CodesThatExceedAlphaAreNoBrighterThanWhite) {
+  std::string codes;
+  for (const int alpha : {0, 1, 3, 100, 199, 200, 230, 255})
+    codes += "\xc8\xc8\xc8" + std::string(1, char(alpha));
+  const float stored = read({{1, 1, "\xc8\xc8\xc8"}}).image.texels[0];
+  const ImageFile unstated = read({{8, 1, codes, 2, 4}}),
+                  associated = read({{8, 1, codes, 2, 4, 8, 1, 1, {{338, 3, {1}}}}});
+  for (int x = 0; x < 8; ++x) {
+    EXPECT_NEAR(findColor(unstated)->rgb(x, 0).x, stored, 1e-6) << x;
+    const float color = associated.image.at(x, 0)[0], alpha = associated.image.at(x, 0)[3];
+    if (x < 6)
+      EXPECT_NEAR(color, std::max(stored, alpha), 1e-6) << x;  // code <= alpha: covered whole
+    EXPECT_GE(color, stored - 1e-6) << x;
+    EXPECT_LE(color, 1) << x;
+  }
+}
+
 // Further samples of unstated meaning, which OpenImageIO calls green, blue or alpha.
 TEST_F(Tiff, GreyStaysGreyBesideOtherSamples) {
   constexpr uint16_t kExtraSamples = 338;

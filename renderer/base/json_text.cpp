@@ -2,6 +2,7 @@
 #include "base/json_text.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -23,17 +24,33 @@ nlohmann::json parseJson(std::span<const uint8_t> text) {
   return nlohmann::json::parse(text.begin(), text.end());
 }
 
-Json readJson(const std::string& text) {
+namespace {
+
+template <class AnyJson>
+AnyJson parsed(const std::string& text, size_t mostKeys) {
   constexpr int kDeepest = 32;  // writing it again is recursive
-  bool isTooDeep = false;
-  const Json value = Json::parse(
+  size_t keys = 0;
+  bool isTooMuch = false;
+  const AnyJson value = AnyJson::parse(
       text,
-      [&](int depth, Json::parse_event_t, const Json&) {
-        isTooDeep |= depth > kDeepest;
-        return !isTooDeep;
+      [&](int depth, typename AnyJson::parse_event_t event, const AnyJson&) {
+        keys += event == AnyJson::parse_event_t::key;
+        isTooMuch |= depth > kDeepest || keys > mostKeys;
+        return !isTooMuch;
       },
       false);
-  return isTooDeep ? Json(Json::value_t::discarded) : value;
+  return isTooMuch ? AnyJson(AnyJson::value_t::discarded) : value;
+}
+
+}  // namespace
+
+nlohmann::json readJson(const std::string& text) {
+  return parsed<nlohmann::json>(text, std::numeric_limits<size_t>::max());
+}
+
+Json readOrderedJson(const std::string& text) {
+  constexpr size_t kMostKeys = 20'000;  // each is searched among those before it
+  return parsed<Json>(text, kMostKeys);
 }
 
 using nlohmann::json;

@@ -21,7 +21,9 @@ std::string jsonText(const nlohmann::ordered_json& json, int indent = -1);
 nlohmann::json parseJson(std::span<const uint8_t> text);
 
 // A `discarded` value if the text is no JSON, or nested more deeply than this program writes it.
-nlohmann::ordered_json readJson(const std::string& text);
+nlohmann::json readJson(const std::string& text);
+// The same with the order of its members, and also `discarded` for more than 20,000 of them.
+nlohmann::ordered_json readOrderedJson(const std::string& text);
 
 // Reads JSON files that people write.
 

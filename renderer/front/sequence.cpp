@@ -29,7 +29,7 @@ FrameRange rangeOf(const Settings& given) {
     if (range.first <= range.last && range.last <= kLargestNumber && range.step > 0) return range;
   }
   throwInput(
-      "{}: `{}` are no frames; give FIRST:LAST or FIRST:LAST:STEP, such as 0:47, of "
+      "{}: `{}` are no frames; give A:B or A:B:STEP, such as 0:47, of "
       "numbers up to {}",
       given.location("frames"), text, kLargestNumber);
 }
@@ -59,8 +59,8 @@ void check(const Settings& all, const Settings& given) {
   };
   if (!given.has("frames")) {
     for (const char* name : {"frame", "overwrite", "seed-per-frame", "probe-sequence"})
-      refuse(name, "needs --frames FIRST:LAST");
-    if (!all.has("camera.shutter")) refuse("fps", "needs --frames FIRST:LAST or --shutter");
+      refuse(name, "needs --frames A:B");
+    if (!all.has("camera.shutter")) refuse("fps", "needs --frames A:B or --shutter");
     return;
   }
   refuse("model.time", "frames have times of their own; leave one of the two out");

@@ -179,14 +179,14 @@ std::string lightIdentity(const LoadedScene& loaded) {
 }
 
 std::string withoutParts(const std::string& identity) {
-  Json whole = readJson(identity);
+  Json whole = readOrderedJson(identity);
   if (!whole.is_object()) return identity;
   for (const char* name : {"shard", "crop", "samples"}) whole.erase(name);
   return jsonText(whole);
 }
 
 std::string differenceOf(const std::string& stored, const std::string& own) {
-  const Json was = readJson(stored), is = readJson(own);
+  const Json was = readOrderedJson(stored), is = readOrderedJson(own);
   if (!was.is_object() || !is.is_object()) return "it was made by another version";
   Json names = was;
   names.update(is);

@@ -2,6 +2,7 @@
 // The colour and the layers of a file that was read.
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "base/error.h"
 #include "image/io/color_channels.h"
@@ -159,11 +160,12 @@ std::optional<Image> findLayer(const ImageFile& file, const std::string& name) {
 std::vector<std::string> layerNames(const ImageFile& file) {
   constexpr std::array kColorChannels = {"R", "G", "B", "A", "X", "Y", "Z"};
   std::vector<std::string> names;
+  std::set<std::string> found;
   for (const std::string& channel : file.channels) {
     if (std::find(kColorChannels.begin(), kColorChannels.end(), channel) != kColorChannels.end())
       continue;
     const std::string name = channel.substr(0, channel.rfind('.'));
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (found.insert(name).second) names.push_back(name);
   }
   return names;
 }

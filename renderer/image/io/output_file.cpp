@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <map>
 
@@ -24,6 +25,7 @@ std::string keyOf(const fs::path& file) {
   struct stat found;
   if (stat(file.c_str(), &found) == 0)
     return fmt::format("{}:{}", uint64_t(found.st_dev), uint64_t(found.st_ino));
+  if (errno == ELOOP) return {};
   std::error_code error;  // a missing file's relative path stays so
   const fs::path canonical =
       fs::weakly_canonical(fs::absolute(replaceableFile(file), error), error);

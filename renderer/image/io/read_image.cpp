@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -204,7 +205,9 @@ std::vector<uint8_t> withPictureFirst(std::vector<uint8_t> bytes, const fs::path
   return tiff.withFirstDirectory(picture);
 }
 
-// `isAssociated`: the codes have been multiplied by alpha (TIFF 6.0, section 18).
+// `isAssociated`: the codes have been multiplied by alpha (TIFF 6.0, section 18). A code above
+// alpha is no such product (light of what covers nothing, or a false statement): it is decoded as
+// it is, but is no darker than alpha.
 void decodeSrgb(Image& image, int alphaChannel, bool isAssociated) {
   const auto channels = size_t(image.channels);
   for (size_t first = 0; first < image.texels.size(); first += channels) {
@@ -213,7 +216,8 @@ void decodeSrgb(Image& image, int alphaChannel, bool isAssociated) {
     for (size_t c = 0; c < channels; ++c) {
       float& texel = image.texels[first + c];
       if (int(c) == alphaChannel) continue;
-      texel = alpha > 0 ? alpha * srgbToLinear(texel / alpha) : srgbToLinear(texel);
+      texel = texel < alpha ? alpha * srgbToLinear(texel / alpha)
+                            : std::max(srgbToLinear(texel), alpha);
     }
   }
 }
@@ -239,7 +243,7 @@ ImageFile readByModule(const fs::path& path, IntegerTexels integers) {
   checkDeflate(bytes);
   image->read(file.image.texels.data());
   if (file.integers && integers == IntegerTexels::Srgb)
-    decodeSrgb(file.image, header.alphaChannel, !header.unassociatedAlpha);
+    decodeSrgb(file.image, header.alphaChannel, !header.unassociatedAlpha && statesAlpha(bytes));
   if (header.unassociatedAlpha && !(file.integers && integers == IntegerTexels::Levels))
     associate(file.image, header.alphaChannel);
   file.image = oriented(std::move(file.image), exifOrientation(bytes));
@@ -251,9 +255,8 @@ bool hasConvertedColor(const ImageFile& file) {
   const PartChannels part{file.part, file.channels};
   if (const auto color = findColorChannels({&part, 1}); color && color->channels.size() == 3)
     return true;
-  const auto has = [&](const std::string& channel) {
-    return std::ranges::count(file.channels, channel) > 0;
-  };
+  const std::set<std::string> channels(file.channels.begin(), file.channels.end());
+  const auto has = [&](const std::string& channel) { return channels.contains(channel); };
   return std::ranges::any_of(layerNames(file), [&](const std::string& layer) {
     return isColorLayer(layer) && has(layer + ".R") && has(layer + ".G") && has(layer + ".B");
   });

@@ -116,13 +116,14 @@ std::vector<double> TiffBlock::rationals(uint64_t directory, uint16_t tag) const
   return values;
 }
 
-std::vector<uint64_t> TiffBlock::integers(uint64_t directory, uint16_t tag) const {
+std::vector<uint64_t> TiffBlock::integers(uint64_t directory, uint16_t tag, uint64_t limit) const {
   const std::optional<uint64_t> entry = entryOf(directory, tag);
   const uint64_t bytes = entry ? integerBytes(number(*entry + 2, 2)) : 0;
   if (bytes == 0) return {};
   const auto [count, most, at] = valuesOf(*entry, bytes);
   std::vector<uint64_t> values;
-  for (uint64_t i = 0; i < most; ++i) values.push_back(number(at + i * bytes, bytes));
+  for (uint64_t i = 0; i < std::min(most, limit); ++i)
+    values.push_back(number(at + i * bytes, bytes));
   return values;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,8 +29,10 @@ class TiffBlock {
   // All values of an entry of rational numbers; empty if there is none. 0 / 0 gives NaN.
   std::vector<double> rationals(uint64_t directory, uint16_t tag) const;
 
-  // All values of an entry of unsigned integers, such as offsets; empty if there is none.
-  std::vector<uint64_t> integers(uint64_t directory, uint16_t tag) const;
+  // The values of an entry of unsigned integers, such as offsets, or the first `limit` of them;
+  // empty if there is none.
+  std::vector<uint64_t> integers(uint64_t directory, uint16_t tag,
+                                 uint64_t limit = std::numeric_limits<uint64_t>::max()) const;
 
   // The value of an entry of bytes; empty if there is none.
   std::span<const uint8_t> bytes(uint64_t directory, uint16_t tag) const;

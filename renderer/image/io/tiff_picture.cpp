@@ -49,13 +49,14 @@ enum Photometric {
 // The directories in the order of the pages, each page before those below it.
 std::vector<uint64_t> directoriesOf(const TiffBlock& tiff) {
   constexpr size_t kMost = 256;
+  constexpr size_t kMostBelow = 1024;  // listed by a page, perhaps again and again
   std::vector<uint64_t> found;
   const auto isNew = [&](uint64_t directory) {
     return directory != 0 && found.size() < kMost && std::ranges::count(found, directory) == 0;
   };
   for (uint64_t page = tiff.firstDirectory(); isNew(page); page = tiff.nextDirectory(page)) {
     found.push_back(page);
-    for (const uint64_t below : tiff.integers(page, kSubDirectories))
+    for (const uint64_t below : tiff.integers(page, kSubDirectories, kMostBelow))
       if (isNew(below)) found.push_back(below);
   }
   return found;
@@ -241,6 +242,12 @@ bool statesGrey(std::span<const uint8_t> file) {
   const std::vector<uint64_t> stated = tiff.integers(tiff.firstDirectory(), kPhotometric);
   constexpr uint64_t kLargestOfGrey = 1;  // 0 if 0 is white
   return !stated.empty() && stated[0] <= kLargestOfGrey;
+}
+
+bool statesAlpha(std::span<const uint8_t> file) {
+  constexpr uint16_t kExtraSamples = 338;
+  const TiffBlock tiff(file);
+  return tiff.has(tiff.firstDirectory(), kExtraSamples);
 }
 
 bool hasTransferTable(std::span<const uint8_t> file) {

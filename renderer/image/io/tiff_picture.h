@@ -31,6 +31,10 @@ std::optional<Chromaticities> tiffPrimaries(std::span<const uint8_t> file);
 // Whether PhotometricInterpretation says that it is grey, whatever the number of its samples.
 bool statesGrey(std::span<const uint8_t> file);
 
+// Whether it says what its samples beyond the colour are (ExtraSamples). OpenImageIO takes a fourth
+// one for associated alpha also where it does not.
+bool statesAlpha(std::span<const uint8_t> file);
+
 // Whether it has a table of the light of its integers (TransferFunction), which is not applied.
 bool hasTransferTable(std::span<const uint8_t> file);
 

@@ -132,7 +132,7 @@ Messages doubtsAbout(const SolvedCamera& camera, const Bounds& model) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 class Reader {
  public:

@@ -57,8 +57,8 @@ def closed_loop(run):
         "and remove the camera's reflection. The ball's reflectivity is that of a surface in the "
         "ball and beside it.",
         ["chromeball probe reflectivity white-ball.exr --direct 2,2,10,10 --reflected 190,190,20,20",
-         "chromeball probe assemble a.exr b.exr --azimuth 0,90 --distance 32 --schlick \\",
-         "  --reflectivity .632,.647,.653 -o made.exr"],
+         "chromeball probe assemble a.exr b.exr --azimuth 0,90 --circle 'X,Y,R;X,Y,R' --distance 32 \\",
+         "  --schlick --reflectivity .632,.647,.653 -o made.exr"],
         "Photographs of a chrome ball in Galileo's Tomb, rendered; the irradiance of the probe made from them, with the "
         "true circle, distance, reflectivity and Fresnel formula given:\n\n"
         + table(["photographs", "mean error, %", "largest, %"], rows)

@@ -48,7 +48,7 @@ def five_shapes(run):
 def temple(run):
     scene = scene_of(run, "temple", lambda text: text.replace("denoise = true\n", ""))
     common = ["--samples", 81, "--size", "240x150", "--adaptive", "off", "--guide", "off"]
-    reference = run.render(scene, "temple-ref.exr", "--samples", 512, *common[2:])
+    reference = run.reference(scene, "temple-ref.exr", "--samples", 2048, *common[2:])
     white = run.scratch / "white.exr"
     run("probe", "synth", "constant", white)
     errors, pictures = {}, []

@@ -12,7 +12,7 @@ def grace_by_lights(run):
     if not grace:
         return []
     common = ["--size", "160x120", "--adaptive", "off", "--guide", "off", "--probe", grace]
-    reference = run.render(PILLARS, "ref.exr", *common, "--samples", 4096)
+    reference = run.reference(PILLARS, "ref.exr", *common, "--samples", 4096)
     rows = []
     for name, samples in [("median-cut:16", 64), ("median-cut:64", 64), ("median-cut:256", 64),
                           ("median-cut-area:64", 64), ("bsdf", 4096)]:
@@ -23,7 +23,7 @@ def grace_by_lights(run):
         "HDRI figures 9.32 and 9.33: Grace with 16, 64 and 256 lights against 4096 random rays",
         "64 lights are close, 256 nearly indistinguishable from the truth, and free of noise.",
         ["chromeball render scenes/models/pillars.gltf --probe grace_probe.hdr --strategy "
-         "median-cut:N -o OUT.exr"],
+         "median-cut:N --adaptive off --guide off -o OUT.exr"],
         table(["strategy", "samples", "FLIP", "relMSE"], rows),
         "A FLIP below 0.05 is hard to see. With 64 samples a pixel of 256 lights the noise of choosing among them is "
         "part of the error.")]
@@ -34,7 +34,7 @@ def st_peters(run):
     if not file:
         return []
     common = [*SMALL, "--probe", file]
-    reference = run.render(PILLARS, "ref.exr", *common, "--samples", 4096)
+    reference = run.reference(PILLARS, "ref.exr", *common, "--samples", 4096)
     errors = {}
     for name in ("uniform", "importance", "bsdf"):
         image = run.render(PILLARS, "p.exr", *common, "--samples", 64, "--strategy", name, "--mis",
@@ -45,7 +45,7 @@ def st_peters(run):
         "HDRI figures 9.36 and 9.37: 64 samples by importance",
         "Importance sampling of St Peter's has far less noise than random directions.",
         ["chromeball render scenes/models/pillars.gltf --probe stpeters_cross.hdr --samples 64 "
-         "--strategy STRATEGY --mis HEURISTIC -o OUT.exr",
+         "--strategy STRATEGY --mis HEURISTIC --adaptive off --guide off -o OUT.exr",
          "chromeball probe plot probes/noon.exr row.svg"],
         table(["samples of 64, heuristic", "relMSE", "times that of importance"],
               [[f"{name}, {'balance' if name == 'bsdf' else 'off'}", f"{error:.3g}", f"{error / errors['importance']:.0f}"] for name, error in errors.items()]), "",

@@ -76,6 +76,10 @@ class Run:
         self("render", scene, "-o", out, "--quiet", *options)
         return self.scratch / out
 
+    def reference(self, scene, out, *options):
+        """A render that others are compared with. With their seed it would begin with their samples, and share their noise."""
+        return self.render(scene, out, "--seed", 1000, *options)
+
     def error(self, image, reference, *more):
         return self.json("image", "error", image, reference, *more)
 

@@ -17,7 +17,7 @@ def few_rays(run):
         if not probe:
             continue
         common = ["--size", "160x107", "--adaptive", "off", "--guide", "off", "--probe", probe]
-        reference = run.render(STILL_LIFE, "ref.exr", *common, "--samples", 2048)
+        reference = run.reference(STILL_LIFE, "ref.exr", *common, "--samples", 2048)
         for strategy, options in [("uniform", ["--mis", "off"]), ("bsdf", []), ("importance", [])]:
             image = run.render(STILL_LIFE, "pot.exr", *common, "--samples", 75, "--strategy", strategy, *options)
             rows.append([f"{name}, `{' '.join([strategy, *options])}`", f"{run.error(image, reference)['relmse']:.3g}"])
@@ -26,7 +26,7 @@ def few_rays(run):
         "Rays towards random directions waste most of their samples on a glossy surface; those drawn from the BSDF do "
         "not.",
         ["chromeball render scenes/models/still-life.glb --probe PROBE --samples 75 --strategy "
-         "STRATEGY [--mis off] -o OUT.exr"],
+         "STRATEGY [--mis off] --adaptive off --guide off -o OUT.exr"],
         table(["probe and strategy", "relMSE, 75 samples"], rows),
         "The objects here are a mixture of matte, lacquered, glass and metal ones. `uniform` has random directions alone; "
         "with MIS, the default, it takes samples of the BSDF too and has less noise than `bsdf`. `importance` combines samples "

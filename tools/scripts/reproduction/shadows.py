@@ -13,7 +13,7 @@ def rows(run):
         if not (file := run.probe(name)):
             continue
         common = [*COMMON, "--guide", "off", "--probe", file]
-        reference = run.render(PILLARS, "shadows-ref.exr", *common, "--samples", 512)
+        reference = run.reference(PILLARS, "shadows-ref.exr", *common, "--samples", 2048)
         methods = ["cube-grid:10", "lightgen:6", "lightgen:40", "lightgen:100", "median-cut:64"]
         for method in methods:
             image = run.render(PILLARS, "shadows.exr", *common, "--samples", 64, "--strategy", method)
@@ -22,7 +22,7 @@ def rows(run):
             if name == "Lobby" and method in ("cube-grid:10", "lightgen:6"):
                 pictures.append((run.picture(image, f"shadows-{method.replace(':', '-')}.png"), f"`{method}`"))
         if name == "Lobby":
-            pictures.append((run.picture(reference, "shadows-importance.png"), "512 samples of the probe"))
+            pictures.append((run.picture(reference, "shadows-importance.png"), "2048 samples of the probe"))
     if not rows:
         return []
     return [Row(
@@ -31,7 +31,8 @@ def rows(run):
         "shadows and highlights are not exactly in place; a finite number of lights may show as "
         "stair-stepped shadows. LightGen puts its lights where the light is, and a window of a few "
         "of them casts as many distinct shadows.",
-        ["chromeball render scenes/models/pillars.gltf --probe PROBE --strategy METHOD:N -o OUT.exr"],
+        ["chromeball render scenes/models/pillars.gltf --probe PROBE --strategy METHOD:N --adaptive off "
+         "--guide off -o OUT.exr"],
         table(["probe and lights", "FLIP", "relMSE"], rows),
         "Each light has a sharp shadow: six of them can be counted, 600 blend. In the lobby the grid's 600 are "
         "as good as 100 of LightGen; in St Peter's, where most light comes from a few windows, 40 of these are better.", pictures)]

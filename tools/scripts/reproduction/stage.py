@@ -37,7 +37,7 @@ def sums(run):
     probes = {"dusk": DUSK, "noon": NOON, **run.probes(["Grace Cathedral", "Uffizi", "St Peter's"])}
     for name, probe in probes.items():
         relit(run, probe, "sum.exr")
-        render = run.render(SUBJECT, "direct.pfm", "--probe", probe, "--size", SIZE, "--samples", 512, "--transparent")
+        render = run.reference(SUBJECT, "direct.pfm", "--probe", probe, "--size", SIZE, "--samples", 512, "--transparent")
         error = run.error(run.scratch / "sum.exr", render, "--flip")
         rows.append([name, f"{error['relmse']:.3g}", f"{100 * error['bias']:+.1f}%", f"{error['flip']:.3f}"])
         if name in ("dusk", "noon"):

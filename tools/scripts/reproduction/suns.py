@@ -80,7 +80,8 @@ file = "{file}"
     return [Row(
         "HDRI figures 9.14 to 9.17: a clipped sun from a diffuse ball",
         "The sun's intensity is solved from a photograph of a grey ball; its render differs by less than 2%.",
-        ["chromeball probe sun clipped.exr --diffuse ball.exr --circle X,Y,R --paint 0.5 --camera AZIMUTH,0"],
+        ["chromeball probe sun clipped.exr --diffuse ball.exr --circle X,Y,R --paint 0.5 --camera AZIMUTH,0 "
+         "--distance 10"],
         table(["probe", "irradiance of the sun found", "of `probe info`", "RMS left, %",
                "RMS of the clipped probe alone, %"], rows),
         "The photographs are rendered here, and the probes clipped at 16 times their mean. `probe info` counts as sun "
