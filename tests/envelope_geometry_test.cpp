@@ -2,6 +2,8 @@
 // tests/ENVELOPE.md: the rows about geometry.
 #include <gtest/gtest.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -184,6 +186,24 @@ TEST(EnvelopeGeometry, ArraysFarFromTheOrigin) {
   double sum = 0;
   for (size_t i = 0; i < near.texels.size(); ++i) sum += std::fabs(near.texels[i] - far.texels[i]);
   EXPECT_LT(sum / double(near.texels.size()), 1e-3);
+}
+
+// A mesh whose coordinates are far from its own origin, which an instance turns and places at that
+// of the world: rays are transformed to the mesh and meet rounding errors of its coordinates.
+TEST(EnvelopeGeometry, InstancesFarFromTheirOwnOrigin) {
+  constexpr float kAlbedo = 0.8f;
+  for (const float away : {0.0f, 200.0f, 2000.0f}) {
+    Scene scene;
+    addSphere(scene, addMaterial(scene, lambert(Rgb(kAlbedo))), {away, 0, 0}, 1, 24, false);
+    const glm::mat3 turn(glm::rotate(glm::dmat4(1), 0.7, glm::dvec3(0.2, 1, 0.1)));
+    scene.instances[0].toWorld = Transform{turn, turn * vec3(-away, 0, 0)};
+    const Camera camera = Camera::lookAt({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 0.3f);
+    const RenderResult r = renderScene(scene, camera, Probe(constantProbe({8, 4}, Rgb(1))),
+                                       "importance", smallRender(16, 16, 64, 4));
+    const Image mean = r.film.mean();
+    EXPECT_NEAR(meanColor(mean).y, kAlbedo, 1e-3f) << away;
+    for (size_t i = 0; i < mean.pixels(); ++i) EXPECT_NEAR(mean.rgb(i).y, kAlbedo, 0.03f) << away;
+  }
 }
 
 TEST(EnvelopeGeometry, DegenerateTriangles) {

@@ -437,8 +437,9 @@ TEST_F(Tiff, CodesThatExceedAlphaAreNoBrighterThanWhite) {
   for (int x = 0; x < 8; ++x) {
     EXPECT_NEAR(findColor(unstated)->rgb(x, 0).x, stored, 1e-6) << x;
     const float color = associated.image.at(x, 0)[0], alpha = associated.image.at(x, 0)[3];
-    if (x < 6)
-      EXPECT_NEAR(color, std::max(stored, alpha), 1e-6) << x;  // code <= alpha: covered whole
+    if (x < 6) {  // the codes are not below alpha: covered whole
+      EXPECT_NEAR(color, std::max(stored, alpha), 1e-6) << x;
+    }
     EXPECT_GE(color, stored - 1e-6) << x;
     EXPECT_LE(color, 1) << x;
   }

@@ -64,7 +64,7 @@ class Emission {
 // length, and not with the surface's coordinates, which are 0 in a coordinate plane.
 vec3 endOfRay(const Surface& surface, float planeOffset, const vec3& origin) {
   const vec3 extent = surface.position - origin;
-  const float offset = rayOffset(extent, extent, extent, surface.geometricNormal);
+  const float offset = rayOffset(absolute(extent), surface.geometricNormal);
   return surface.position + std::max(planeOffset, offset) * surface.geometricNormal;
 }
 

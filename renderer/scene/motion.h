@@ -20,6 +20,12 @@ struct Transform {
   vec3 translation{0};
 
   vec3 point(const vec3& p) const { return linear * p + translation; }
+  // The sizes of the products that point() adds, which its rounding errors are relative to.
+  vec3 reach(const vec3& p) const {
+    const vec3 size = absolute(p);
+    return absolute(linear[0]) * size.x + absolute(linear[1]) * size.y +
+           absolute(linear[2]) * size.z + absolute(translation);
+  }
   bool operator==(const Transform&) const = default;
 };
 

@@ -40,9 +40,8 @@ inline size_t triangleCount(const Scene& scene, const Instance& instance) {
 inline float planeOffset(const Scene& scene, const Instance& instance, uint32_t triangle,
                          const vec3& normal, float time) {
   constexpr float kAcross = 0.25f;
-  const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
-  const auto [p0, p1, p2] = cornersAt(scene, instance, mesh.triangles[triangle], time);
-  return rayOffset(p0, p1, p2, glm::abs(normal) + kAcross);
+  return rayOffset(placedTriangle(scene, instance, triangle, time).sizes,
+                   glm::abs(normal) + kAcross);
 }
 
 }  // namespace chromeball

@@ -123,10 +123,9 @@ std::optional<TangentFrame> tangentFrame(const Surface& s, const Instance& insta
 // bound also holds for a large triangle through the origin. kAcross adds a small fraction of the
 // other directions, so that the offset is not 0 for a triangle in a coordinate plane. With Embree
 // 3.13, 2 roundings suffice; with 4.4, 16 were too few for one ray in 10^5.
-float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& normal) {
+float rayOffset(const vec3& sizes, const vec3& normal) {
   constexpr float kRoundings = 32 * std::numeric_limits<float>::epsilon(), kAcross = 1.0f / 1024;
-  const vec3 extent = glm::max(absolute(p0), glm::max(absolute(p1), absolute(p2)));
-  return kRoundings * glm::dot(absolute(normal) + kAcross, extent);
+  return kRoundings * glm::dot(absolute(normal) + kAcross, sizes);
 }
 
 std::array<vec3, 3> cornersAt(const Scene& scene, const Instance& instance, const Triangle& t,
@@ -135,6 +134,29 @@ std::array<vec3, 3> cornersAt(const Scene& scene, const Instance& instance, cons
   const std::vector<vec3>& positions = scene.meshes[instance.mesh].positions;
   return {instance.point(positions[t.x]), instance.point(positions[t.y]),
           instance.point(positions[t.z])};
+}
+
+namespace {
+
+vec3 sizesOf(const vec3& p0, const vec3& p1, const vec3& p2) {
+  return glm::max(absolute(p0), glm::max(absolute(p1), absolute(p2)));
+}
+
+// Rays are transformed to the mesh's space, and meet its coordinates there.
+vec3 sizesOf(const Instance& instance, const Mesh& mesh, const Triangle& t, const vec3& ofCorners) {
+  if (!instance.toWorld) return ofCorners;
+  const vec3 own = sizesOf(mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]);
+  return glm::max(ofCorners, instance.toWorld->reach(own));
+}
+
+}  // namespace
+
+PlacedTriangle placedTriangle(const Scene& scene, const Instance& instance, uint32_t triangle,
+                              float time) {
+  const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+  const Triangle& t = mesh.triangles[triangle];
+  const std::array<vec3, 3> corners = cornersAt(scene, instance, t, time);
+  return {corners, sizesOf(instance, mesh, t, sizesOf(corners[0], corners[1], corners[2]))};
 }
 
 Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangle, vec2 barycentric,
@@ -170,7 +192,7 @@ Surface surfaceAt(const Scene& scene, const Instance& instance, uint32_t triangl
   if (crossSection > 0)
     s.footprint = footprintOf(crossSection, glm::dot(front, wo), std::sqrt(doubleArea2));
   s.geometricNormal = s.frontFace ? front : -front;
-  s.rayOffset = rayOffset(p0, p1, p2, front);
+  s.rayOffset = rayOffset(sizesOf(instance, *s.mesh, s.triangle, sizesOf(p0, p1, p2)), front);
 
   s.normal = s.geometricNormal;
   if (!s.mesh->normals.empty()) {

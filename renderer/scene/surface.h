@@ -37,8 +37,19 @@ struct Surface {
 std::array<vec3, 3> cornersAt(const Scene& scene, const Instance& instance,
                               const Triangle& triangle, float time);
 
-// The offset of ray origins from a triangle with these corners and this unit normal, metres.
-float rayOffset(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& normal);
+// A triangle in world space, with the sizes of the coordinates that rounding errors of its points
+// are relative to. Those of an instance may exceed the corners: a mesh far from its own origin may
+// be placed near that of the world.
+struct PlacedTriangle {
+  std::array<vec3, 3> corners;
+  vec3 sizes;
+};
+PlacedTriangle placedTriangle(const Scene& scene, const Instance& instance, uint32_t triangle,
+                              float time);
+
+// The offset of ray origins from a triangle with coordinates of these sizes and this unit normal,
+// metres.
+float rayOffset(const vec3& sizes, const vec3& normal);
 
 // Whether a ray along `direction` hits the back of the triangle; equals !surfaceAt().frontFace.
 bool isFromBehind(const Scene& scene, const Instance& instance, uint32_t triangle,

@@ -54,12 +54,12 @@ class ClippedTriangle {
 };
 
 // An offset that is at least rayOffset() for any normal.
-double largestOffset(const Coincidence::Corners& corners) {
-  return double(rayOffset(corners[0], corners[1], corners[2], vec3(1)));
+double largestOffset(const PlacedTriangle& triangle) {
+  return double(rayOffset(triangle.sizes, vec3(1)));
 }
 
-Points pointsOf(const Coincidence::Corners& corners) {
-  return {dvec3(corners[0]), dvec3(corners[1]), dvec3(corners[2])};
+Points pointsOf(const PlacedTriangle& triangle) {
+  return {dvec3(triangle.corners[0]), dvec3(triangle.corners[1]), dvec3(triangle.corners[2])};
 }
 
 template <class Condition>
@@ -69,17 +69,18 @@ bool holdsForAll(const Points& points, const Condition& condition) {
 
 }  // namespace
 
-Coincidence::Coincidence(const Corners& corners)
-    : centre_((corners[0] + corners[1] + corners[2]) / 3.0f),
-      offset_(largestOffset(corners)),
-      corners_(pointsOf(corners)) {
-  for (const vec3& corner : corners) radius_ = std::max(radius_, glm::length(corner - centre_));
+Coincidence::Coincidence(const PlacedTriangle& triangle)
+    : centre_((triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0f),
+      offset_(largestOffset(triangle)),
+      corners_(pointsOf(triangle)) {
+  for (const vec3& corner : triangle.corners)
+    radius_ = std::max(radius_, glm::length(corner - centre_));
   normal_ = glm::normalize(glm::cross(corners_[1] - corners_[0], corners_[2] - corners_[0]));
   for (size_t i = 0; i < 3; ++i)
     inwards_[i] = glm::normalize(glm::cross(normal_, corners_[(i + 1) % 3] - corners_[i]));
 }
 
-bool Coincidence::overlaps(const Corners& other) const {
+bool Coincidence::overlaps(const PlacedTriangle& other) const {
   constexpr double kNarrow = 8;  // in offsets
   const Points points = pointsOf(other);
   for (size_t i = 0; i < 3; ++i)  // neighbours, most of all
@@ -97,7 +98,7 @@ bool Coincidence::overlaps(const Corners& other) const {
   return part.area() > kNarrow * offset * part.length();
 }
 
-bool Coincidence::mayTouch(const Corners& other, bool isNeighbour) const {
+bool Coincidence::mayTouch(const PlacedTriangle& other, bool isNeighbour) const {
   const Points points = pointsOf(other);
   const double offset = 2 * std::max(offset_, largestOffset(other));
   const double margin = isNeighbour ? offset_ : -offset;  // of the edges, inwards

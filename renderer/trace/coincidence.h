@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "math/vec.h"
+#include "scene/surface.h"
 
 namespace chromeball {
 
@@ -12,18 +12,16 @@ namespace chromeball {
 // scene/surface.h) of its plane, over it.
 class Coincidence {
  public:
-  using Corners = std::array<vec3, 3>;
-
-  explicit Coincidence(const Corners& corners);
+  explicit Coincidence(const PlacedTriangle& triangle);
 
   // Whether a part of the other triangle that is wider than a few ray offsets coincides:
   // neighbours, which touch at an edge, and walls that cross in a line do not. Not for a triangle
   // without area.
-  bool overlaps(const Corners& other) const;
+  bool overlaps(const PlacedTriangle& other) const;
 
   // Whether any part may coincide, within twice the offset. `isNeighbour`: of the same mesh, which
   // may touch the edges.
-  bool mayTouch(const Corners& other, bool isNeighbour) const;
+  bool mayTouch(const PlacedTriangle& other, bool isNeighbour) const;
 
   // A sphere around the triangle.
   const vec3& centre() const { return centre_; }

@@ -15,9 +15,10 @@ using glm::dvec3;
 // A triangle in relation to a point.
 class CoincidentTriangle {
  public:
-  explicit CoincidentTriangle(const std::array<vec3, 3>& corners)
-      : floats_(corners),
-        corners_{dvec3(corners[0]), dvec3(corners[1]), dvec3(corners[2])},
+  explicit CoincidentTriangle(const PlacedTriangle& triangle)
+      : sizes_(triangle.sizes),
+        corners_{dvec3(triangle.corners[0]), dvec3(triangle.corners[1]),
+                 dvec3(triangle.corners[2])},
         normal_(glm::cross(corners_[1] - corners_[0], corners_[2] - corners_[0])),
         area_(glm::length(normal_)) {}
 
@@ -29,9 +30,7 @@ class CoincidentTriangle {
   double along(const dvec3& direction, const dvec3& from) const {
     return glm::dot(normal_, corners_[0] - from) / glm::dot(normal_, direction);
   }
-  double offset() const {
-    return rayOffset(floats_[0], floats_[1], floats_[2], vec3(normal_ / area_));
-  }
+  double offset() const { return rayOffset(sizes_, vec3(normal_ / area_)); }
 
   // Whether a point of the plane lies in the triangle, at least `margin` metres from its edges. If
   // two triangles share an edge, exactly one contains the points of the edge.
@@ -63,7 +62,7 @@ class CoincidentTriangle {
     return false;
   }
 
-  std::array<vec3, 3> floats_;
+  vec3 sizes_;
   std::array<dvec3, 3> corners_;
   dvec3 normal_;
   double area_;  // twice the triangle's, the length of normal_
@@ -89,8 +88,7 @@ void testTriangle(const CoincidentSearch& s, uint32_t instanceIndex, uint32_t tr
   if (!(s.accel.mask(instanceIndex) & s.mask)) return;
   const Scene& scene = s.accel.scene();
   const Instance& instance = scene.instances[instanceIndex];
-  const CoincidentTriangle triangle(cornersAt(
-      scene, instance, scene.meshes[size_t(instance.mesh)].triangles[triangleIndex], s.ray.time));
+  const CoincidentTriangle triangle(placedTriangle(scene, instance, triangleIndex, s.ray.time));
   const dvec3 normal(s.surface.geometricNormal), position(s.surface.position);
   if (triangle.isParallel(normal)) return;
   const double offset = s.surface.rayOffset, inFront = triangle.along(normal, position);

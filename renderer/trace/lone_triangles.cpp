@@ -29,15 +29,14 @@ LoneTriangles::LoneTriangles(const Accel& accel) : accel_(accel) {
 
 bool LoneTriangles::touchesOthers(uint32_t instance, uint32_t triangle) const {
   const Scene& scene = accel_.scene();
-  const auto corners = [&](uint32_t i, uint32_t t) {
-    const Instance& placed = scene.instances[i];
-    return cornersAt(scene, placed, scene.meshes[size_t(placed.mesh)].triangles[t], 0);
+  const auto placed = [&](uint32_t i, uint32_t t) {
+    return placedTriangle(scene, scene.instances[i], t, 0);
   };
-  const Coincidence own(corners(instance, triangle));
+  const Coincidence own(placed(instance, triangle));
   const float reach = own.radius() + float(4 * own.offset());
   bool isTouched = false;
   accel_.forEachNear(own.centre(), reach, 0, [&](uint32_t i, uint32_t t) {
-    isTouched |= (i != instance || t != triangle) && own.mayTouch(corners(i, t), i == instance);
+    isTouched |= (i != instance || t != triangle) && own.mayTouch(placed(i, t), i == instance);
     return !isTouched;
   });
   return isTouched;

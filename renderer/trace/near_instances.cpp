@@ -28,13 +28,14 @@ Transform placementAt(const Instance& instance, float time) {
 RTCBounds boundsOf(const Instance& instance, RTCScene mesh) {
   RTCBounds own;
   rtcGetSceneBounds(mesh, &own);
-  vec3 lower(std::numeric_limits<float>::infinity()), upper(-lower);
+  vec3 lower(std::numeric_limits<float>::infinity()), upper(-lower), sizes(0);
   const auto add = [&](const Transform& toWorld) {
     for (int corner = 0; corner < 8; ++corner) {
-      const vec3 p = toWorld.point({corner & 1 ? own.lower_x : own.upper_x,
-                                    corner & 2 ? own.lower_y : own.upper_y,
-                                    corner & 4 ? own.lower_z : own.upper_z});
+      const vec3 at(corner & 1 ? own.lower_x : own.upper_x, corner & 2 ? own.lower_y : own.upper_y,
+                    corner & 4 ? own.lower_z : own.upper_z);
+      const vec3 p = toWorld.point(at);
       lower = glm::min(lower, p), upper = glm::max(upper, p);
+      sizes = glm::max(sizes, toWorld.reach(at));
     }
   };
   if (instance.motion)
@@ -42,7 +43,7 @@ RTCBounds boundsOf(const Instance& instance, RTCScene mesh) {
   else
     add(instance.toWorld.value_or(Transform{}));
   constexpr float kRoundings = 8 * std::numeric_limits<float>::epsilon();
-  const vec3 margin = kRoundings * glm::max(absolute(lower), absolute(upper));
+  const vec3 margin = kRoundings * sizes;
   lower -= margin, upper += margin;
   return {lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, 0};
 }

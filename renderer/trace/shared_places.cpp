@@ -17,13 +17,12 @@ namespace chromeball {
 void SharedPlaces::addPartnersOf(const Accel& accel, uint32_t instance, uint32_t triangle,
                                  float time, std::atomic<int64_t>& budget) {
   const Scene& scene = accel.scene();
-  const auto corners = [&](uint32_t i, uint32_t t) {
-    const Instance& placed = scene.instances[i];
-    return cornersAt(scene, placed, scene.meshes[size_t(placed.mesh)].triangles[t], time);
+  const auto placed = [&](uint32_t i, uint32_t t) {
+    return placedTriangle(scene, scene.instances[i], t, time);
   };
-  const Coincidence own(corners(instance, triangle));
+  const Coincidence own(placed(instance, triangle));
   accel.forEachNear(own.centre(), own.radius(), time, [&](uint32_t i, uint32_t t) {
-    if ((i != instance || t != triangle) && own.overlaps(corners(i, t))) {
+    if ((i != instance || t != triangle) && own.overlaps(placed(i, t))) {
       const std::scoped_lock lock(mutex_);
       triangles_.insert(keyOf(i, t));
       triangles_.insert(keyOf(instance, triangle));
