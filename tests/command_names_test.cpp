@@ -171,7 +171,7 @@ TEST(CommandNames, WordsOfOtherProgramsAreUnderstoodInOptionsAndKeys) {
   expectHint("[camera]\nfocal_length = 50\n", "did you mean `fov`?");
   expectHint("[camera]\nfstop = 2\n", "`aperture` and `focus` in [camera]");
   expectHint("[render]\nfov = 40\n", "did you mean `fov` in [camera]?");
-  expectHint("[[light]]\nbrightness = 1\n", "known: ");  // not the probe's scale
+  expectHint("[[light]]\nbrightness = 1\n", "one key, of a number");  // not the probe's scale
   expectHint("[output]\ntonemap = 'ACES'\n", "did you mean `aces`?");
   const auto expectOption = [&](const std::string& option, const std::string& hint) {
     expectError({"render", kPillars, option, "1"}, hint);
@@ -185,6 +185,80 @@ TEST(CommandNames, WordsOfOtherProgramsAreUnderstoodInOptionsAndKeys) {
   expectError({"probe", "convert", "--mappin", "a"}, "did you mean `--probe-mapping`?");
   expectError({"probe", "convert", "--wattage", "a"},
               "unknown option `--wattage`; known: --help, ");
+}
+
+TEST(CommandNames, OptionsThatNoProgramSharesAreFoundByTheirMeaning) {
+  const auto expectOption = [&](const std::string& option, const std::string& hint) {
+    expectError({"render", kPillars, option, "1"}, "unknown option `" + option + "`; " + hint);
+  };
+  expectOption("--engine", "did you mean `--integrator NAME`?");
+  expectOption("--passes", "did you mean `--aov NAME,...`?");
+  expectOption("--layers", "did you mean `--aov NAME,...`?");
+  expectOption("--wireframe", "surfaces are rendered, not their edges");
+  for (const char* lookAt : {"--lookat", "--look_at", "--LookAt"})
+    expectOption(lookAt, "did you mean `--look-at`?");
+  for (const char* floor : {"--floor", "--ground-plane"})
+    expectOption(floor, "did you mean `--ground=HEIGHT`?");
+  for (const char* shadow : {"--shadow", "--shadows"})
+    expectOption(shadow, "did you mean `--shadow-catcher NODE,...`?");
+  expectOption("--probe-intensity", "did you mean `--probe-scale R[,G,B]`?");
+  for (const char* verbose : {"--verbose", "-v"})
+    expectOption(verbose, "did you mean `--progress`?");
+  expectOption("--silent", "did you mean `--quiet`?");
+  expectOption("--format", "the ending of an image's name decides its format: --output");
+  expectError({"compare", kPillars, "--quality", "final"}, "did you mean `--samples`?");
+}
+
+TEST(CommandNames, TablesAndKeysOfListsAreFoundByTheirMeaning) {
+  const TemporaryFolder folder;
+  const std::string scene = folder / "scene.toml";
+  const auto expectHint = [&](const std::string& toml, const std::string& hint) {
+    std::ofstream(scene) << toml;
+    expectError({"render", scene, "-o", folder / "a.exr"}, "; " + hint);
+  };
+  const std::string model = "[[model]]\nfile = '" + kPillars + "'\n";
+  expectHint(model + "[[lights]]\ntype = 'sun'\n", "did you mean [[light]]?");
+  expectHint("lights = 0\n" + model, "did you mean `lights` in [lighting]?");
+  expectHint(model + "[cameras]\nfov = 40\n", "did you mean [camera]?");
+  expectHint(model + "position = [0, 1, 0]\n", "did you mean `translation`?");
+  expectHint(model + "[composite]\nfloor = true\n", "did you mean `ground`?");
+  expectHint(model + "[render]\nverbose = true\n", "known: ");  // an option, and no setting
+  expectHint(model + "[render]\nclamp_direct = 1\n", "did you mean the option --clamp?");
+  for (const char* strength : {"color", "strength", "energy"})
+    expectHint(model + "[[light]]\n" + strength + " = 1\n",
+               "colour and strength are one key, of a number or three: `intensity` or `power`");
+  expectHint(model + "[[light]]\ntype = 'directional'\n", "did you mean `sun`?");
+  expectHint(model + "[[light]]\ntype = 'area'\n", "did you mean `disc`?");
+  expectHint(model + "[[light]]\ntype = 'dome'\n", "an environment is a probe");
+  expectHint(model + "[composite]\nshadow = 1\n", "did you mean the option --shadow-catcher?");
+  expectHint(model + "[lighting]\nstrategy = 'mis'\n", "multiple importance sampling is");
+}
+
+TEST(CommandNames, ValuesAreFoundByTheirMeaning) {
+  const auto expectHint = [&](const Words& options, const std::string& hint) {
+    expectError(with({"render", kPillars}, options), hint);
+  };
+  expectHint({"--strategy", "mis"}, "`mis` is not known; multiple importance sampling is");
+  expectHint({"--strategy", "mis"}, "see --mis");
+  expectHint({"--quality", "high"}, "did you mean `final`?");
+  expectHint({"--quality", "preview"}, "did you mean `draft`?");
+  expectHint({"--quality", "dreft"}, "did you mean `draft`?");
+  expectHint({"--denoise", "false"}, "did you mean `--denoise=false`?");
+  expectHint({"--denoise", "off"}, "did you mean `--denoise=false`?");
+  expectHint({"--view", "fornt"}, "or front, back, left, right, above or below");
+  expectError({"render", "--denoise", "on", kPillars}, "did you mean `--denoise=true`?");
+  expectError({"compare", kPillars, "--denoise", "off"}, "unknown option `--denoise`");
+}
+
+TEST(CommandNames, FilesInPlaceOfCommandsGetACommand) {
+  const std::string scene = std::string(kSourceDir) + "/scenes/demo.toml";
+  expectError({kPillars, "--probe", kDusk}, "did you mean `chromeball render " + kPillars + "`?");
+  expectError({scene}, "did you mean `chromeball render " + scene + "`?");
+  expectError({kDusk}, "did you mean `chromeball probe info " + kDusk + "`?");
+  expectError({"probe", kDusk}, "did you mean `chromeball probe info " + kDusk + "`?");
+  expectError({"image", kDusk}, "did you mean `chromeball image view " + kDusk + " OUT.png`?");
+  expectError({"probe", "inf"}, "unknown command `inf`; did you mean `info`?");
+  expectError({"info", scene}, "a scene file: `chromeball render` shows it");
 }
 
 }  // namespace

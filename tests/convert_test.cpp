@@ -177,10 +177,15 @@ TEST(Repair, CountsLocatesAndReplaces) {
   EXPECT_EQ(report.negative, 1u);
   EXPECT_EQ(report.firstX, 0);
   EXPECT_EQ(report.firstY, 1);
+  EXPECT_TRUE(report.isBrightest);  // 3 of 5
+  EXPECT_NE(describe(report).find("where it is brightest"), std::string::npos);
   EXPECT_FLOAT_EQ(image.rgb(0, 1).x, (7 * 1 + 5) / 8.0f);  // also across the seam
   EXPECT_EQ(image.rgb(3, 2), Rgb(1, 5, 1));
   EXPECT_EQ(image.rgb(5, 3), Rgb(0, 3, 1));
   EXPECT_EQ(repair(image, true).total(), 0u);
+
+  image.setRgb(5, 3, Rgb(-2, 1, 1));
+  EXPECT_FALSE(repair(image, true).isBrightest);
 
   Image allNan(2, 2, 3);
   std::fill(allNan.texels.begin(), allNan.texels.end(), nan);

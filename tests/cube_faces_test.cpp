@@ -94,6 +94,25 @@ TEST(CubeFaces, TheEdgesTellWhoseAxesTheNamesAre) {
             std::string::npos);
 }
 
+// Names that say which face is where are believed, but not in silence.
+TEST(CubeFaces, EdgesThatFitWithFrontAndBackExchangedAreSaid) {
+  const Image strip = cubeMap(Mapping::HorizontalStrip);
+  const auto messages = [&](const std::vector<std::string>& names) {
+    const TemporaryFolder folder;
+    writeFaces(folder, strip, names);
+    std::string all;
+    for (const Message& message : loadProbe(folderOf(folder)).messages) all += message.text;
+    return all;
+  };
+  constexpr const char* kExchanged = "front and back exchanged";
+  EXPECT_EQ(messages({"right.exr", "left.exr", "top.exr", "bottom.exr", "back.exr", "front.exr"})
+                .find(kExchanged),
+            std::string::npos);
+  EXPECT_NE(messages({"right.exr", "left.exr", "top.exr", "bottom.exr", "front.exr", "back.exr"})
+                .find(kExchanged),
+            std::string::npos);
+}
+
 // Edges of one colour do not tell: pz is the front, as in most programs that write six files.
 TEST(CubeFaces, FacesOfOneColourAreSeenAlongOpenGlsAxes) {
   const TemporaryFolder folder;

@@ -249,7 +249,7 @@ TEST_F(SceneFileTest, SeveralModelsKeepTheirOrder) {
 
 TEST_F(SceneFileTest, UnknownKeyNamesItsLineAndTheNearestKey) {
   expectError("[render]\nsampels = 3\n", 3, {"`sampels`", "[render]", "did you mean `samples`?"});
-  expectError("[renderer]\n", 2, {"`renderer`", "did you mean `render`?"});
+  expectError("[renderer]\n", 2, {"`renderer`", "did you mean [render]?"});
   expectError("[camera]\nlookat = [0,0,0]\n", 3, {"`lookat`", "`look_at`"});
   expectError("[probe]\nwattage = 3\n", 3,
               {"`wattage`", "file, mapping, rotation, rotation_keys, scale"});

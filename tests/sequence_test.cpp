@@ -362,6 +362,28 @@ TEST(Sequence, NamesATimeInVain) {
       << messages[0].text;
 }
 
+TEST(Sequence, StillsThatWereMeantAsSequencesAreNoted) {
+  SceneFile scene;
+  const auto notes = [&](const Words& options) {
+    Settings given;
+    for (size_t i = 0; i < options.size(); i += 2) {
+      const Setting& setting = settingNamed(options[i]);
+      const std::string location = "--" + setting.option;
+      given.set(setting.name(), parseSetting(setting, {options[i + 1]}, location), location);
+    }
+    std::string text;
+    for (const Message& message : Sequence(scene, given).messages()) text += message.text + "\n";
+    return text;
+  };
+  EXPECT_TRUE(notes({"turntable", "360"}).starts_with("--turntable: a turn of 360 degrees"));
+  EXPECT_TRUE(notes({"orbit", "-720"}).starts_with("--orbit: a turn of -720 degrees"));
+  EXPECT_NE(notes({"orbit", "360"}).find("--frames A:B"), std::string::npos);
+  for (const char* turn : {"0", "90", "400"}) EXPECT_EQ(notes({"turntable", turn}), "") << turn;
+  EXPECT_TRUE(notes({"output.file", "a/q.##.png"}).starts_with("--output: `a/q.##.png` is"));
+  EXPECT_EQ(notes({"output.file", "c#/q.png"}), "");
+  EXPECT_EQ(notes({"output.file", "q.##.png", "turntable", "360", "frames", "0:3"}), "");
+}
+
 TEST(Sequence, NamesFiles) {
   EXPECT_EQ(withNumber("a.####.exr", 7), "a.0007.exr");
   EXPECT_EQ(withNumber("a.#.exr", 12345), "a.12345.exr");
@@ -412,7 +434,7 @@ TEST(Sequence, RefusesWhatItCannotRender) {
     expectError(words(model.scene(), more, out / name), reason);
   };
   for (const char* frames : {"5:2", "3", "0:9:0", "-1:4", "0:99999999", "0:1:2:3"})
-    refused({"--frames", frames}, "FIRST:LAST");
+    refused({"--frames", frames}, "A:B or A:B:STEP");
   refused({"--fps", "12"}, "needs --frames");
   refused({"--overwrite"}, "needs --frames");
   refused({"--frames", "0:1", "--fps", "0"}, "--fps");

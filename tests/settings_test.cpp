@@ -11,7 +11,9 @@
 
 #include "base/error.h"
 #include "front/plan_render.h"
+#include "front/scene_values.h"
 #include "front/settings_page.h"
+#include "front/synonyms.h"
 #include "render/render.h"
 #include "run_command.h"
 
@@ -295,6 +297,33 @@ TEST_F(SettingsInAFile, OptionsOverrideTheFileAndTheFileOverridesDefaults) {
   EXPECT_FALSE(description.settings.noiseLimit) << "--time replaces the limits of the file";
   EXPECT_EQ(description.settings.samples, kMaxSamples);
   EXPECT_FALSE(description.camera.placed);
+}
+
+TEST_F(SettingsInAFile, ViewsHaveNames) {
+  const std::pair<const char*, std::vector<double>> kViews[] = {
+      {"front", {0, 0}},  {"back", {180, 0}}, {"left", {-90, 0}},  {"right", {90, 0}},
+      {"above", {0, 90}}, {"top", {0, 90}},   {"below", {0, -90}}, {"bottom", {0, -90}}};
+  const Setting& view = settingNamed("camera.view");
+  for (const auto& [name, angles] : kViews) {
+    EXPECT_EQ(std::get<std::vector<double>>(parseSetting(view, {name}, "")), angles) << name;
+    std::ofstream(path_) << sceneWith(view, fmt::format("'{}'", name));
+    EXPECT_EQ(readSceneFile(path_).settings.get<std::vector<double>>("camera.view"), angles);
+    toml::table keywords;
+    keywords.insert("view", name);
+    EXPECT_EQ(keywordSettings(keywords, "render()").get<std::vector<double>>("camera.view"),
+              angles);
+  }
+  EXPECT_NE(errorOf(sceneWith(view, "'topp'")).find("must be one angle, two or three, or front"),
+            std::string::npos);
+  EXPECT_EQ(numbersCalled(settingNamed("probe.rotation"), "front"), nullptr);
+}
+
+// An option of the command that is no setting was looked for in the table, and read from its end.
+TEST(Settings, WordsOfOthersNameSettingsOrOptions) {
+  EXPECT_EQ(settingCalled("--spp"), &settingNamed("render.samples"));
+  EXPECT_EQ(settingCalled("--verbose"), nullptr);
+  EXPECT_EQ(optionCalled("--verbose"), "progress");
+  EXPECT_EQ(optionCalled("--spp"), "");
 }
 
 TEST(Settings, DefaultsEqualThoseOfRenderSettings) {

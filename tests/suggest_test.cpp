@@ -37,6 +37,13 @@ TEST(Suggest, NoNameIsNearIfMostLettersDiffer) {
   EXPECT_EQ(nearestName(std::string(4 << 20, 's'), {"samples", "seed", "size"}), "");
 }
 
+TEST(Suggest, SameNamesDifferInDashesAndCapitalsAlone) {
+  EXPECT_EQ(sameName("--lookat", {"--look", "--look-at"}), "--look-at");
+  EXPECT_EQ(sameName("LookAt", {"look_at_node", "look_at"}), "look_at");
+  EXPECT_EQ(sameName("lookatt", {"look_at"}), "");
+  EXPECT_EQ(sameName("--", {"", "-"}), "");
+}
+
 TEST(Suggest, MessageHasTheNearestNameOrAllNames) {
   EXPECT_EQ(didYouMean("sized", {"size", "seed"}), "did you mean `size`?");
   EXPECT_EQ(didYouMean("wattage", {"size", "seed"}), "known: size, seed");

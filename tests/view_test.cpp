@@ -158,6 +158,15 @@ TEST(View, ChartsAreSeenFromTheirFront) {
   expectAxis(frontOf({1, 0, 0}, {0, 1, -1}), std::sqrt(0.5f) * vec3(0, 1, 1), "desk");
 }
 
+// A board with samples that stand out from it.
+TEST(View, BoardsAreSeenFromTheirFront) {
+  Scene board = empty();
+  addBox(board, vec3(-1, -1, -0.2f), vec3(1, 1, -0.1f));
+  for (int i = 0; i < 9; ++i)
+    addSphere(board, 0, vec3(0.6f * float(i % 3 - 1), 0.6f * float(i / 3 - 1), 0), 0.2f, 8);
+  expectAxis(framingCamera(board, kAspect).back, {0, 0, 1}, "board");
+}
+
 TEST(View, RowsAreSeenFromTheirSide) {
   Scene row = empty();
   for (int i = 0; i < 7; ++i) addSphere(row, 0, vec3(0, 1, 2 * i), 1, 8);

@@ -151,6 +151,17 @@ std::string_view nearestName(std::string_view name, const std::vector<std::strin
   return nearest;
 }
 
+std::string_view sameName(std::string_view name, const std::vector<std::string_view>& known) {
+  const auto plain = [](std::string_view text) {
+    std::string letters = lowerCase(text);
+    std::erase_if(letters, [](char c) { return c == '-' || c == '_'; });
+    return letters;
+  };
+  const std::string letters = plain(name);
+  const auto found = std::ranges::find(known, letters, plain);
+  return letters.empty() || found == known.end() ? std::string_view() : *found;
+}
+
 std::string didYouMean(std::string_view name, const std::vector<std::string_view>& known) {
   const std::string_view nearest = nearestName(name, known);
   if (nearest.empty()) return fmt::format("known: {}", fmt::join(known, ", "));

@@ -34,6 +34,10 @@ int editDistance(std::string_view a, std::string_view b);
 // distance is more than half the length of the longer name.
 std::string_view nearestName(std::string_view name, const std::vector<std::string_view>& known);
 
+// The known name that differs from `name` in no more than dashes, underscores and capitals; empty
+// if there is none.
+std::string_view sameName(std::string_view name, const std::vector<std::string_view>& known);
+
 // "did you mean `NEAREST`?", or "known: A, B, C" if no name is near. The end of an error message.
 std::string didYouMean(std::string_view name, const std::vector<std::string_view>& known);
 

@@ -212,7 +212,10 @@ NoiseQuantiles noiseQuantiles(const Image& relativeErrors) {
   std::vector<float> known = relativeErrors.texels;
   std::erase_if(known, [](float error) { return std::isnan(error); });
   if (known.empty()) return {kNan, kNan};
-  if (std::erase(known, 0.0f); known.empty()) return {0, 0};
+  constexpr float kClean = 0.002f;
+  const bool isNoisy = std::ranges::any_of(known, [](float error) { return error > kClean; });
+  std::erase_if(known, [&](float error) { return !(error > (isNoisy ? kClean : 0)); });
+  if (known.empty()) return {0, 0};
   const auto quantile = [&](double fraction) {
     const auto at = known.begin() + std::ptrdiff_t(fraction * double(known.size() - 1));
     std::nth_element(known.begin(), at, known.end());

@@ -55,8 +55,9 @@ Noise estimateNoise(const PixelErrors& errors);
 // and for all of a black image.
 Image relativeErrors(const PixelErrors& errors, const std::vector<glm::dvec4>& squaredErrors);
 
-// Over the pixels that have noise: not NaN, and not 0, which a plate, a black background and a
-// light seen directly have. NaN if all are NaN, 0 if none has noise.
+// Over the pixels that have noise: not NaN, and above 0.2%, below which are plates, black
+// backgrounds, lights seen directly and most of a visible probe; if none is above, over those that
+// are not 0. NaN if all are NaN, 0 if none has noise.
 struct NoiseQuantiles {
   double median, p95;
 };

@@ -2,6 +2,8 @@
 #include "front/sequence.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <regex>
 
 #include <fmt/format.h>
@@ -124,8 +126,28 @@ SequenceFrame Sequence::frame(int number) const {
   return frame;
 }
 
+namespace {
+
+// A still that is turned by whole turns, and files that are named as those of frames.
+void addStillNotes(const Settings& all, Messages& messages) {
+  for (const char* name : {"orbit", "turntable"})
+    if (const auto turn = all.getIfGiven<double>(name);
+        turn && *turn != 0 && std::fmod(*turn, 360) == 0)
+      addNote(messages,
+              "{}: a turn of {:g} degrees leaves this one image as it is; --frames A:B makes a "
+              "sequence of images on the way",
+              all.location(name), *turn);
+  for (const std::string& path : all.get<std::vector<std::string>>("output.file"))
+    if (std::filesystem::path(path).filename().string().find('#') != std::string::npos)
+      addNote(messages, "{}: `{}` is this one image's name; # becomes a number with --frames A:B",
+              all.location("output.file"), path);
+}
+
+}  // namespace
+
 Messages Sequence::messages() const {
   Messages messages;
+  if (numbers_.empty()) addStillNotes(all_, messages);
   for (size_t i = 0; !numbers_.empty() && i < scene_.models.size(); ++i)
     if (const std::string time = elementName("models", i) + ".choice.animation.seconds";
         scene_.origins.has(time))

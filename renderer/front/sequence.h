@@ -27,7 +27,8 @@ class Sequence {
   const std::vector<int>& numbers() const { return numbers_; }  // empty: a still
   int first() const { return first_; }                          // of those that --frames names
   SequenceFrame frame(int number) const;                        // throws InputError
-  Messages messages() const;  // about keys of the scene file without effect on frames
+  // About keys of the scene file without effect on frames, or what a still has of a sequence.
+  Messages messages() const;
 
  private:
   const SceneFile& scene_;

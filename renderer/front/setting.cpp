@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "front/arguments.h"
+#include "front/synonyms.h"
 
 namespace chromeball {
 namespace {
@@ -57,9 +58,17 @@ std::string describeRange(const Range& range, bool whole) {
 }
 
 void checkChoice(const Setting& setting, const std::string& name, const std::string& location) {
-  if (std::ranges::count(setting.choices, name) == 0)
-    throwInput("{}: `{}` is not known; {}", location, printableName(name),
-               didYouMean(name, setting.choices));
+  if (std::ranges::count(setting.choices, name) > 0) return;
+  const std::string hint = hintOnValue(setting, name);
+  throwInput("{}: `{}` is not known; {}", location, printableName(name),
+             hint.empty() ? didYouMean(name, setting.choices) : hint);
+}
+
+// Names that only the code that uses them knows, but for those that are sure to be none.
+void checkName(const Setting& setting, const std::string& name, const std::string& location) {
+  if (name.empty()) throwInput("{}: is empty", location);
+  if (const std::string hint = hintOnValue(setting, name); !hint.empty())
+    throwInput("{}: `{}` is not known; {}", location, printableName(name), hint);
 }
 
 // Splits words at commas; each word may contain several names.
@@ -80,9 +89,10 @@ double parseNumber(const Setting& setting, std::string text, const std::string& 
   return number;
 }
 
-// Numbers separated by commas; an empty one is refused.
+// Numbers separated by commas, or their name; an empty one is refused.
 std::vector<double> parseList(const Setting& setting, const std::string& text,
                               const std::string& location) {
+  if (const auto* named = numbersCalled(setting, text)) return *named;
   std::vector<double> numbers;
   for (const std::string_view part : splitAt(text, ','))
     if (!toNumber(part, numbers.emplace_back())) refuse(setting, text, location);
@@ -131,6 +141,11 @@ std::string expectedNumber(Setting setting, const Range& range) {
   if (setting.type == Type::Compound || setting.type == Type::Numbers) setting.type = Type::Number;
   setting.range = range;
   return expected(setting);
+}
+
+const std::vector<double>* numbersCalled(const Setting& setting, std::string_view name) {
+  const auto found = std::ranges::find(setting.named, name, &NamedNumbers::name);
+  return found == setting.named.end() ? nullptr : &found->numbers;
 }
 
 SettingValue parseSetting(const Setting& setting, const std::vector<std::string>& words,
@@ -199,8 +214,7 @@ void checkSetting(const Setting& setting, const SettingValue& value, const std::
     case Type::Name:
     case Type::File:
     case Type::Source:
-      if (std::get<std::string>(value).empty()) throwInput("{}: is empty", location);
-      return;
+      return checkName(setting, std::get<std::string>(value), location);
     default:
       return;
   }

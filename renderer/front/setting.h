@@ -54,6 +54,11 @@ struct Range {
   }
 };
 
+struct NamedNumbers {
+  std::string_view name;
+  std::vector<double> numbers;
+};
+
 // The effect of a setting.
 enum class Effect {
   Image,    // changes the radiance of pixels: part of the description
@@ -72,8 +77,9 @@ struct Setting {
   std::string_view argument = {};
   std::string_view bare = {};  // the value of an option without "=ARGUMENT"; empty: not allowed
   SettingType type;
-  std::string_view form = {};       // of a Compound or of Numbers: "three numbers"
-  std::vector<size_t> counts = {};  // of Numbers: how many there may be
+  std::string_view form = {};            // of a Compound or of Numbers: "three numbers"
+  std::vector<size_t> counts = {};       // of Numbers: how many there may be
+  std::vector<NamedNumbers> named = {};  // of Numbers: names for some of them
   Range range = {};
   std::string_view unit = {};
   std::string fallback = {};     // the default, in the syntax of the option; empty: none
@@ -91,6 +97,9 @@ struct Setting {
 std::string expected(const Setting& setting);
 // The same for one number of the setting, in another range.
 std::string expectedNumber(Setting setting, const Range& range);
+
+// The numbers with this name among the setting's; nullptr if there are none.
+const std::vector<double>* numbersCalled(const Setting& setting, std::string_view name);
 
 // The value of an option's arguments (none for a flag). Throws InputError, begun by `location`.
 SettingValue parseSetting(const Setting& setting, const std::vector<std::string>& words,

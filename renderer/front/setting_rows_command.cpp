@@ -186,7 +186,8 @@ std::vector<Setting> commandRows() {
            .help = "Time between checkpoints."},
           {.option = "resume",
            .type = Flag,
-           .help = "Continues from the checkpoint, or starts where there is none."},
+           .help = "Continues from the checkpoint, or starts where there is none. --time counts "
+                   "the earlier runs."},
       });
   return rows;
 }

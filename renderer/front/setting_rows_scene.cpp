@@ -79,15 +79,24 @@ std::vector<Setting> cameraRows() {
       {.key = "view",
        .argument = "AZIMUTH[,ELEVATION[,ROLL]]",
        .type = Numbers,
-       .form = "one angle, two or three (front 0,0; right 90,0; left -90,0; above 0,90)",
+       .form = "one angle, two or three, or front, back, left, right, above or below",
        .counts = {1, 2, 3},
+       .named = {{"front", {0, 0}},
+                 {"back", {180, 0}},
+                 {"left", {-90, 0}},
+                 {"right", {90, 0}},
+                 {"above", {0, 90}},
+                 {"top", {0, 90}},
+                 {"below", {0, -90}},
+                 {"bottom", {0, -90}}},
        .range = {.min = -360, .max = 360},
        .unit = "degrees",
        .absent = "24, 18; or what suits the model's shape",
-       .help = "The direction from which a camera frames the model: 0,0 from the front (+Z), 90,0 "
-               "from the right (+X), 0,90 from above; an azimuth alone from 18 degrees above. ROLL "
-               "turns the camera counter-clockwise. A "
-               "room is then seen from outside. The model's own cameras are not used."},
+       .help = "The direction from which a camera frames the model: front (0,0: from +Z), back "
+               "(180,0), left (-90,0), right (90,0: from +X), above or top (0,90), below or bottom "
+               "(0,-90), or other angles; an azimuth alone from 18 degrees above. ROLL turns the "
+               "camera counter-clockwise. A room is then seen from outside. The model's own "
+               "cameras are not used."},
       {.key = "look_at_node",
        .option = "look-at",
        .argument = "NODE",
@@ -150,7 +159,7 @@ std::vector<Setting> probeRows() {
        .absent = "the model's own light",
        .help = "Light probe: an HDR image of all directions (.hdr, .exr, .pfm, ...), or a folder "
                "with the six faces of a cube map (px.hdr, nx.hdr, ... or right, left, top, bottom, "
-               "front, back)."},
+               "back, front, which is -Z)."},
       {.key = "mapping",
        .option = "probe-mapping",
        .type = Choice,

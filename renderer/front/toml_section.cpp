@@ -73,6 +73,10 @@ double Entry::number(const Range& range) const {
 }
 
 std::vector<double> Entry::numbers() const {
+  if (const auto* name = node->as_string(); name && !setting->named.empty()) {
+    if (const auto* named = numbersCalled(*setting, name->get())) return *named;
+    mustBe(expected(*setting));
+  }
   std::vector<double> all;
   forEach(*this, [&](const Entry& e) { all.push_back(e.number()); });
   if (std::ranges::count(setting->counts, all.size()) == 0) mustBe(expected(*setting));
@@ -153,17 +157,34 @@ std::string headingOf(std::string_view name) {
   return fmt::format("[[{}]]", name);  // [[model]]
 }
 
+// The key of this section, or table of the file, that differs little; else that of another section
+// which others call so; empty if there is neither.
+std::string hintOnWord(std::string_view key, bool isTable, std::string_view section,
+                       const std::vector<std::string_view>& known) {
+  if (isTable && section.empty())  // [[lights]], not `lights` in [lighting]
+    if (const auto near = nearestName(key, known); !near.empty())
+      return fmt::format("did you mean {}?", headingOf(near));
+  if (const auto same = sameName(key, known); !same.empty())
+    return fmt::format("did you mean `{}`?", same);
+  const Setting* meant = settingCalled(key);
+  if (!meant) return "";
+  if (meant->key.empty()) return fmt::format("did you mean the option --{}?", meant->option);
+  if (isTable) return fmt::format("did you mean {}?", headingOf(meant->section));
+  if (std::ranges::count(known, meant->option) > 0)  // `ground`, which [composite] has too
+    return fmt::format("did you mean `{}`?", meant->option);
+  if (meant->section == section) return fmt::format("did you mean `{}`?", meant->key);
+  return fmt::format("did you mean `{}` in {}?", meant->key, headingOf(meant->section));
+}
+
 // What the unknown key of a section may mean: one of this section, or of another.
 std::string hintOn(std::string_view key, bool isTable, std::string_view section,
                    const std::vector<std::string_view>& known) {
   const bool isTop = section.empty() && std::ranges::count(known, "render") > 0;
-  if (!isTop && (section.empty() || headingOf(section).starts_with("[[")))
-    return didYouMean(key, known);  // a list, whose words have meanings of their own
-  const Setting* meant = settingCalled(key);
-  const bool isKey = meant && !meant->key.empty();
-  if (isKey && isTable) return fmt::format("did you mean {}?", headingOf(meant->section));
-  if (isKey && meant->section == section) return fmt::format("did you mean `{}`?", meant->key);
-  if (isKey) return fmt::format("did you mean `{}` in {}?", meant->key, headingOf(meant->section));
+  if (!isTop && (section.empty() || headingOf(section).starts_with("[["))) {
+    const std::string hint = hintOnListKey(section, key);  // words have meanings of their own there
+    return hint.empty() ? didYouMean(key, known) : hint;
+  }
+  if (const auto hint = hintOnWord(key, isTable, section, known); !hint.empty()) return hint;
   if (const auto place = placeOf(key); !place.empty()) return std::string(place);
   const auto& table = settingTable();
   const auto same = std::ranges::find(table, key, &Setting::key);
@@ -178,7 +199,7 @@ void Section::checkKeys(const std::vector<std::string_view>& known) const {
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       failAt(locationIn(file_, key), "unknown key `{}`{}; {}", printableName(key.str()),
              name_.empty() ? "" : " in " + heading(),
-             hintOn(key.str(), node.is_table(), name_, known));
+             hintOn(key.str(), node.is_table() || node.is_array_of_tables(), name_, known));
 }
 
 Entry Section::required(std::string_view key) const {

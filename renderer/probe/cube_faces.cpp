@@ -76,7 +76,17 @@ void orientAxes(const fs::path& folder, ImageFile& file) {
           : fit < -1
               ? "its front, -Z: the edges fit as in OpenGL and Direct3D"
               : "its front, -Z, as in OpenGL and Direct3D: the edges do not tell; files named "
-                "right, left, top, bottom, front, back leave no doubt");
+                "right, left, top, bottom, back, front leave no doubt");
+}
+
+// Names that say which face is where may have been given to the wrong ones.
+void checkNames(const fs::path& folder, ImageFile& file) {
+  if (axesThatFit(file.image) < -1)
+    addWarning(
+        file.messages,
+        "{}: the edges of its faces would fit with front and back exchanged; front is -Z, where "
+        "a camera looks that is not turned",
+        folder.string());
 }
 
 }  // namespace
@@ -105,7 +115,7 @@ ImageFile readCubeFaces(const fs::path& folder, const CubeFaces& faces) {
     for (int y = 0; y < n; ++y)
       std::copy_n(image.at(0, y), 3 * size_t(n), cube.image.at(face * n, y));
   }
-  if (faces.namesAxes) orientAxes(folder, cube);
+  faces.namesAxes ? orientAxes(folder, cube) : checkNames(folder, cube);
   return cube;
 }
 

@@ -170,6 +170,14 @@ RepairReport repair(Image& image, bool wrapX) {
       ++(hasNan(c) ? report.nan : isFinite(c) ? report.negative : report.infinite);
     }
 
+  constexpr float kBright = 0.5f;  // of the largest
+  for (size_t i = 0; i < image.pixels() && !report.isBrightest; ++i) {
+    const Rgb c = image.rgb(i);
+    const bool isLost = hasNan(c) || (isFinite(c) && (c.x < 0 || c.y < 0 || c.z < 0));
+    for (int k = 0; k < 3; ++k)
+      report.isBrightest |= isLost && c[k] > 0 && c[k] >= kBright * largest;
+  }
+
   // All NaN texels are filled from the original neighbours before any is replaced.
   std::vector<std::pair<size_t, Rgb>> filled;
   for (int y = 0; y < image.height && report.nan > 0; ++y)
@@ -184,8 +192,11 @@ RepairReport repair(Image& image, bool wrapX) {
 }
 
 std::string describe(const RepairReport& report) {
-  return fmt::format("{} NaN, {} infinite, {} negative texels, the first at ({}, {})", report.nan,
-                     report.infinite, report.negative, report.firstX, report.firstY);
+  return fmt::format("{} NaN, {} infinite, {} negative texels, the first at ({}, {}){}", report.nan,
+                     report.infinite, report.negative, report.firstX, report.firstY,
+                     report.isBrightest ? ", also where it is brightest: the colour and the amount "
+                                          "of that light, such as a sun's, are lost"
+                                        : "");
 }
 
 }  // namespace chromeball

@@ -40,6 +40,7 @@ struct RepairReport {
   // Numbers of texels; each counts once: as NaN if any channel is, else as infinite, else negative.
   size_t nan = 0, infinite = 0, negative = 0;
   int firstX = -1, firstY = -1;  // the first in reading order; -1: none
+  bool isBrightest = false;      // one that is not infinite is among the brightest texels
 
   size_t total() const { return nan + infinite + negative; }
 };

@@ -37,11 +37,13 @@ Areas areasOf(const Scene& scene, const std::vector<int>& instances) {
 
 // The angles for a shape with a front, and for one that is long; nullopt for any other.
 std::optional<ViewAngles> anglesForShape(const Areas& areas, const dvec3& size) {
-  constexpr double kPlane = 0.999, kThin = 0.12, kLong = 1.5;
+  // Charts with legible faces, which glTF turns towards +Z, may be thicker than other flat shapes.
+  constexpr double kPlane = 0.999, kThin = 0.12, kThinChart = 0.21, kLong = 1.5;
   const dvec3& front = areas.vector;
   if (glm::length(front) > kPlane * areas.sum && areas.sum > 0) return anglesOf(front);
   if (size.x < kThin * std::min(size.y, size.z)) return ViewAngles{front.x < 0 ? -90.0 : 90.0, 0};
-  if (size.z < kThin * std::min(size.x, size.y)) return ViewAngles{front.z < 0 ? 180.0 : 0.0, 0};
+  if (size.z < kThinChart * std::min(size.x, size.y))
+    return ViewAngles{front.z < 0 ? 180.0 : 0.0, 0};
   if (size.y < kThin * std::min(size.x, size.z)) return ViewAngles{kUsual.azimuth, 45};
   if (size.z > kLong * size.x) return ViewAngles{90 - kUsual.azimuth, kUsual.elevation};
   return {};

@@ -78,6 +78,14 @@ Messages writeOutputs(const RenderDescription& description, const OutputImage& i
     if (isShown && !shown) shown = developed(description, image, messages);
     const Messages lost = writeImage(path, isShown ? *shown : image, description.output.display);
     messages.insert(messages.end(), lost.begin(), lost.end());
+    const bool isCatcher =
+        description.composite && description.composite->mode == CompositeMode::ShadowCatcher;
+    if (isCatcher && lowerExtension(path) == ".png")
+      addNote(messages,
+              "{}: its shadows are right where images are laid over others in linear light, as "
+              "compositing programs do; where sRGB codes are mixed, as in most image editors, they "
+              "are much too dark",
+              path);
   }
   return messages;
 }

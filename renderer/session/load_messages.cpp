@@ -139,6 +139,15 @@ void addPlateScale(const CompositeEntry& composite, const PlateScale& found, Mes
           "{:.3g} times that",
           scale.x, scale.y, scale.z, found.pixels, grey, 100 * found.scatter, range.x, range.y,
           grey / double(range.y), grey / double(range.x));
+  constexpr double kMostScatter = 0.5;  // of one surface, with its texture
+  if (found.scatter > kMostScatter)
+    addWarning(
+        messages,
+        "the pixels around the objects scatter by {:.2g}%: they show more than one surface, or "
+        "light "
+        "and shadow, and the probe's scale is a mean that fits none; place the objects where the "
+        "ground is even, or give the scale as numbers",
+        100 * found.scatter);
 }
 
 }  // namespace

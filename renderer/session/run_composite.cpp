@@ -49,36 +49,47 @@ std::string scaledText(const glm::dvec3& scale) {
   return fmt::format("{:.2g},{:.2g},{:.2g}", scale.x, scale.y, scale.z);
 }
 
-std::string cureOfDimLight(const CompositeReport::Reflectance& r, bool isScaledByPlate) {
-  if (isScaledByPlate)
-    return "a smaller `ground_reflectance` in [composite] makes the light brighter, and mode = "
-           "\"ratio\" darkens the plate itself";
+// The composite's formula, and whether the plate gives the probe's scale.
+struct Formula {
+  CompositeMode mode;
+  bool isScaledByPlate;
+};
+
+std::string cureOfDimLight(const CompositeReport::Reflectance& r, const Formula& formula) {
+  const bool mayBeRatio = formula.mode == CompositeMode::Difference;
+  if (formula.isScaledByPlate)
+    return fmt::format("a smaller `ground_reflectance` in [composite] makes the light brighter{}",
+                       mayBeRatio ? ", and mode = \"ratio\" darkens the plate itself" : "");
   if (r.exposureRatio > 1)
     return fmt::format(
         "plate and probe may differ in exposure: the light fits the plate at {:.3g} "
         "times its brightness",
         r.exposureRatio);
-  return "lamps that the probe does not have may light them; mode = \"ratio\" darkens the plate "
-         "itself";
+  return fmt::format("lamps that the probe does not have may light them{}",
+                     mayBeRatio ? "; mode = \"ratio\" darkens the plate itself" : "");
 }
 
-Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale, bool isScaledByPlate) {
+Messages warningsOf(const CompositeReport& report, const glm::dvec3& scale,
+                    const Formula& formula) {
   constexpr double kMinClamped = 0.01;
   Messages messages;
   if (const auto& r = report.reflectance; r && r->clampedFraction > kMinClamped) {
     addWarning(messages,
                "shadows are too faint on {:.1f}% of the local scene's pixels, which are brighter "
                "than white in this light (albedo above 1, clamped): {}",
-               100 * r->clampedFraction, cureOfDimLight(*r, isScaledByPlate));
-    if (!isScaledByPlate && r->exposureRatio > 1)
+               100 * r->clampedFraction, cureOfDimLight(*r, formula));
+    if (!formula.isScaledByPlate && r->exposureRatio > 1)
       messages.back().remedy = Remedy{"probe.scale", scaledText(r->exposureRatio * scale)};
   }
   if (report.darkerThanBlack)
     addWarning(messages,
                "{} {} black, since the objects take more light there than the plate has: "
                "the light is too bright for the plate, or falls on things that the local scene "
-               "lacks; mode = \"ratio\" darkens the plate by a factor instead",
-               report.darkerThanBlack, report.darkerThanBlack == 1 ? "pixel is" : "pixels are");
+               "lacks{}",
+               report.darkerThanBlack, report.darkerThanBlack == 1 ? "pixel is" : "pixels are",
+               formula.mode == CompositeMode::Difference
+                   ? "; mode = \"ratio\" darkens the plate by a factor instead"
+                   : "");
   return messages;
 }
 
@@ -104,8 +115,8 @@ FinishedRender renderComposite(const LoadedScene& loaded, const PreparedScene& p
   FinishedImage finished =
       finishComposite(finishPlan(loaded, rendered.result), rendered, progress, stop.denoising);
   finished.composite->reflectance = reflectance;
-  Messages messages =
-      warningsOf(*finished.composite, description.probe.scale, loaded.plateScale.has_value());
+  Messages messages = warningsOf(*finished.composite, description.probe.scale,
+                                 {plan.mode, loaded.plateScale.has_value()});
   const auto& limit = description.settings.noiseLimit;
   if (limit && plan.passes == Passes::Two && !rendered.result.interrupted &&
       finished.noise.noise > *limit)

@@ -17,6 +17,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "commands.h"
 #include "front/synonyms.h"
@@ -69,13 +70,19 @@ std::string describeMismatch(const std::string& error) {
                      error.substr(argument, error.size() - kMissing.size() - argument));
 }
 
+// The command's option that others call so, with its argument if it is a setting; empty if unknown.
+std::string optionCalledSo(const std::string& word, const CLI::App& command) {
+  const auto isOption = [&](const std::string& name) {
+    return command.get_option_no_throw("--" + name) != nullptr;
+  };
+  const Setting* setting = settingCalled(word);
+  if (setting && isOption(setting->option)) return optionText(*setting);
+  const std::string other(optionCalled(word));
+  return !other.empty() && isOption(other) ? "--" + other : "";
+}
+
 // Which option of the command the unknown one, "--spp", may mean; where it is none, what to do.
 std::string hintOn(const std::string& option, const CLI::App& command) {
-  const Setting* ours = settingCalled(option);
-  if (ours && command.get_option_no_throw("--" + ours->option))
-    return fmt::format("did you mean `{}`?", optionText(*ours));
-  if (const auto place = placeOf(option); !place.empty() && command.get_option_no_throw("--probe"))
-    return std::string(place);
   std::vector<std::string> shown;  // names that the help shows
   std::map<std::string, std::string> all;
   for (const CLI::Option* known : command.get_options())
@@ -85,21 +92,58 @@ std::string hintOn(const std::string& option, const CLI::App& command) {
     }
   std::vector<std::string_view> names;
   for (const auto& [name, first] : all) names.push_back(name);
+  if (const std::string same(sameName(option, names)); !same.empty())
+    return fmt::format("did you mean `{}`?", all.at(same));
+  if (const std::string ours = optionCalledSo(option, command); !ours.empty())
+    return fmt::format("did you mean `{}`?", ours);
+  if (const auto place = placeOf(option); !place.empty() && all.contains("--probe"))
+    return std::string(place);
   const std::string nearest(nearestName(option, names));
   if (nearest.empty()) return didYouMean(option, {shown.begin(), shown.end()});
   return fmt::format("did you mean `{}`?", all.at(nearest));
 }
 
-// What to say about `--ground 0.5`, where the value of an option may be left out; empty if no such
-// option is among the words.
-std::string onValueWithoutEquals(const std::vector<std::string>& words) {
-  double number = 0;
+// The text of a flag's value that a word stands for, "false" for "off"; empty if it is none.
+std::string_view valueOfFlag(std::string_view word) {
+  constexpr std::array<std::string_view, 4> kTrue = {"true", "on", "yes", "1"},
+                                            kFalse = {"false", "off", "no", "0"};
+  const std::string name = lowerCase(word);
+  if (std::ranges::count(kTrue, name) > 0) return "true";
+  return std::ranges::count(kFalse, name) > 0 ? "false" : "";
+}
+
+// What to say about `--ground 0.5`, where the value of an option may be left out, or `--denoise
+// off`; empty if no such option of the command is among the words.
+std::string onValueWithoutEquals(const CLI::App& command, const std::vector<std::string>& words) {
+  const auto needsEquals = [](const Setting& setting, const std::string& given) {
+    return fmt::format("--{}: needs `=` before a value; did you mean `{}`?", setting.option, given);
+  };
   for (const Setting& setting : settingTable())
-    for (size_t i = 1; !setting.bare.empty() && i < words.size(); ++i)
-      if (words[i - 1] == "--" + setting.option && toNumber(words[i], number))
-        return fmt::format("--{}: needs `=` before a value; did you mean `{}`?", setting.option,
-                           optionText(setting, words[i]));
+    for (size_t i = 1; i < words.size(); ++i) {
+      const std::string option = "--" + setting.option;
+      if (words[i - 1] != option || !command.get_option_no_throw(option)) continue;
+      double number = 0;
+      if (!setting.bare.empty() && toNumber(words[i], number))
+        return needsEquals(setting, optionText(setting, words[i]));
+      const std::string_view flag = valueOfFlag(words[i]);
+      if (setting.type == SettingType::Flag && !flag.empty())
+        return needsEquals(setting, fmt::format("--{}={}", setting.option, flag));
+    }
   return "";
+}
+
+// The command that reads a file which was given in place of the name of a command below `group`;
+// empty if the word is no such file.
+std::string commandForFile(const std::string& group, const std::string& word) {
+  constexpr std::array kScenes = {".toml", ".gltf", ".glb"};
+  constexpr std::array kImages = {".hdr",  ".exr",  ".pfm", ".png",  ".jpg",
+                                  ".jpeg", ".webp", ".tif", ".tiff", ".pic"};
+  const std::string extension = lowerExtension(word);
+  const bool isScene = std::ranges::count(kScenes, extension) > 0;
+  if (isScene && group == "chromeball") return "chromeball render " + word;
+  if (std::ranges::count(kImages, extension) == 0) return "";
+  if (group == "image") return fmt::format("chromeball image view {} OUT.png", word);
+  return group == "chromeball" || group == "probe" ? "chromeball probe info " + word : "";
 }
 
 // Rewrites an error message of CLI11 about these words; for an unknown one, adds the nearest known.
@@ -119,7 +163,8 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error,
       return message;
   if (unknown.empty()) return fmt::format("{}; {}", error.what(), help);
 
-  if (const std::string message = onValueWithoutEquals(words); !message.empty()) return message;
+  if (const std::string message = onValueWithoutEquals(command, words); !message.empty())
+    return message;
   const std::string& word = unknown.front();
   const auto owner = std::ranges::find_if(  // `prob info`: it is none of `info`
       commands, [](const CLI::App* named) { return !named->remaining(false).empty(); });
@@ -128,6 +173,8 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error,
     const std::string option = word.substr(0, word.find('='));
     return fmt::format("unknown option `{}`; {}", option, hintOn(option, where));
   }
+  if (const std::string better = commandForFile(where.get_name(), word); !better.empty())
+    return fmt::format("unknown command `{}`; did you mean `{}`?", word, better);
   std::vector<std::string> names;
   for (const CLI::App* subcommand : where.get_subcommands(nullptr))
     names.push_back(subcommand->get_name());

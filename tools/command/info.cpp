@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "commands.h"
 #include "image/io/cube_files.h"
@@ -169,10 +170,17 @@ bool isProbe(const std::string& path) {
   return std::filesystem::is_regular_file(path) && imageFormat(path) != ImageFormat::Unknown;
 }
 
+// What else the file may be, as the end of a message.
+std::string_view otherKind(const std::string& path) {
+  if (isProbe(path)) return "; see `chromeball probe info` for a light probe";
+  return lowerExtension(path) == ".toml" ? ", but a scene file: `chromeball render` shows it, and "
+                                           "`chromeball info` the models that it names"
+                                         : "";
+}
+
 void run(const InfoArguments& a) {
   if (std::filesystem::exists(a.file) && !beginsAsGltf(a.file))
-    throwInput("{}: is no glTF model (.gltf, .glb){}", a.file,
-               isProbe(a.file) ? "; see `chromeball probe info` for a light probe" : "");
+    throwInput("{}: is no glTF model (.gltf, .glb){}", a.file, otherKind(a.file));
   const ModelInfo info =
       modelInfo(a.file, a.allowsExternal ? ExternalFiles::Allow : ExternalFiles::Refuse);
   if (a.json)

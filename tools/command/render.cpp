@@ -18,7 +18,8 @@
 namespace chromeball {
 namespace {
 
-void renderStill(const SceneFile& scene, const SceneOptions& options) {
+void renderStill(const SceneFile& scene, const SceneOptions& options,
+                 const Messages& sequenceMessages) {
   RenderDescription description = planRender(scene, options.settings);
   const Messages outputMessages = checkOutputs(description);
   const ThreadLimit threads = threadLimit(options.settings);
@@ -47,6 +48,7 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
   FinishedRender result = [&] {
     ImageRender render(loaded, viewers.all());
     print(viewers.messages());  // after the last error that input can cause
+    print(sequenceMessages);
     print(outputMessages);
     print(loaded.messages);
     print(sceneNotes(loaded));
@@ -64,7 +66,8 @@ void renderStill(const SceneFile& scene, const SceneOptions& options) {
 void render(const SceneOptions& options) {
   const SceneFile scene = openScene(options.scene);
   const Sequence sequence(scene, options.settings);
-  sequence.numbers().empty() ? renderStill(scene, options) : renderFrames(sequence, options);
+  sequence.numbers().empty() ? renderStill(scene, options, sequence.messages())
+                             : renderFrames(sequence, options);
 }
 
 }  // namespace

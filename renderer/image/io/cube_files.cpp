@@ -78,7 +78,7 @@ size_t countOf(const FaceFiles& cube) {
   if (fullest == cubes.end())
     throwInput(
         "{}: is a folder without a cube map, whose faces would be images named px, nx, py, ny, pz, "
-        "nz; posx, negx, ...; or right, left, top, bottom, front, back",
+        "nz; posx, negx, ...; or right, left, top, bottom, back, front",
         folder.string());
   std::vector<std::string> missing;
   for (size_t face = 0; face < kFaces; ++face)
