@@ -143,7 +143,7 @@ TEST_F(SlowCommandCompare, writesAllResultsAndContinues) {
   const std::string page = fileContents(dir() + "/index.html");
   const std::string example = page.substr(page.find("<pre id=\"example\">"), 600);
   for (const char* column : {"strategy", "unbiased", "budget", "relmse", "seconds", "efficiency",
-                             "efficiency_low", "efficiency_high"}) {
+                             "efficiency_low", "efficiency_high", "missed_light"}) {
     EXPECT_NE(example.find(column), std::string::npos) << column;
     EXPECT_NE(("," + csv.substr(0, csv.find('\n')) + ",").find(fmt::format(",{},", column)),
               std::string::npos)
@@ -210,6 +210,24 @@ TEST_F(SlowCommandCompare, rareBrightSamplesAreTold) {
   for (const json& warning : all["warnings"]) told += std::string(warning);
   EXPECT_NE(told.find("most of the error of uniform:"), std::string::npos) << told;
   EXPECT_TRUE(all["agreement"].empty());
+}
+
+// A smaller sun, which no sample of BSDFs meets.
+TEST_F(SlowCommandCompare, lightThatNoSampleHasFoundIsTold) {
+  Image sun = constantProbe({2048, 1024}, Rgb(0.1f));
+  sun.setRgb(33, 384, Rgb(1e5f));
+  writeImage(folder_ / "probe.exr", sun);
+  std::vector<std::string> arguments = command({"--strategies", "bsdf,importance", "--samples", "1",
+                                                "--repeats", "3", "--reference-samples", "256"});
+  std::erase(arguments, "--quiet");
+  const CommandResult result = runCommand(arguments);
+  ASSERT_EQ(result.status, 0) << result.error;
+  EXPECT_NE(result.error.find("The samples of bsdf have not found light"), std::string::npos)
+      << result.error;
+  EXPECT_NE(result.out.find(" (light not found)\n"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("\nUse importance.\n"), std::string::npos) << result.out;
+  EXPECT_NE(fileContents(dir() + "/index.html").find("Light not found: an unbiased strategy"),
+            std::string::npos);
 }
 
 TEST_F(SlowCommandCompare, badInputIsRejected) {

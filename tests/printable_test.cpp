@@ -162,7 +162,8 @@ TEST_F(SlowHostileMessage, LongAndLoopingPaths) {
   expectRefusal({"probe", "info", folder / std::string(300, 'n')}, "too long");
   std::filesystem::create_symlink("loop.exr", folder / "loop.exr");
   expectRefusal({"probe", "info", folder / "loop.exr"}, "symbolic links");
-  expectRefusal({"image", "view", folder / "loop.exr", folder / "o.png"}, "loop.exr: Too many levels");
+  expectRefusal({"image", "view", folder / "loop.exr", folder / "o.png"},
+                "loop.exr: Too many levels");
   ASSERT_EQ(runCommand({"probe", "synth", "constant", folder / "p.exr"}).status, 0);
   expectRefusal(
       {"probe", "convert", folder / "p.exr", folder / "loop.exr/x/o.exr", "--to", "angular"},

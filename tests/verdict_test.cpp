@@ -13,10 +13,12 @@ namespace {
 const Budget kBudget{false, 16};
 
 StrategyResult strategy(const std::string& name, const Estimate& relMse, double seconds,
-                        bool unbiased = true) {
+                        bool unbiased = true, const Estimate& bias = {}) {
   StrategyResult result{.name = name, .unbiased = unbiased};
   Cell cell{.strategy = name, .budget = kBudget};
   cell.error.relMse = relMse;
+  cell.error.bias = bias;
+  cell.light = foundLight(cell.error, unbiased);
   cell.repeatSeconds = {seconds, seconds, 1.01 * seconds, 0.99 * seconds};
   result.cells.push_back(cell);
   return result;
@@ -85,6 +87,41 @@ TEST(Verdict, HasOneLineForTheBiased) {
   EXPECT_EQ(verdictOf({better, worse})[1], "All of them are biased.");
 }
 
+// The table lists both kinds, so that the second of the unbiased need not be its second row.
+TEST(Verdict, SaysWhatIsTheNextBestOf) {
+  const StrategyResult best = strategy("importance", {0.01, 0.0001}, 1);
+  const StrategyResult next = strategy("bsdf", {0.04, 0.0004}, 1);
+  for (const double error : {0.005, 0.02}) {  // before the best, and between
+    const auto found = verdictOf({best, strategy("suns", {error, 0.0002}, 1, false), next});
+    EXPECT_TRUE(found[0].starts_with(
+        "Use importance: at equal time bsdf, the next best of the unbiased, has 4 "))
+        << found[0];
+  }
+  const auto found = verdictOf({best, next, strategy("median-cut:4", {0.1, 0.001}, 1, false)});
+  EXPECT_TRUE(found[0].starts_with("Use importance: at equal time bsdf, the next best, has 4 "))
+      << found[0];
+}
+
+// Without the sun that none of its samples has met, an unbiased strategy is dark, and its error is
+// the smallest of all.
+TEST(Verdict, HasNoUseForRowsThatHaveMissedLight) {
+  const StrategyResult good = strategy("importance", {0.01, 0.0001}, 1);
+  const StrategyResult dark = strategy("bsdf", {0.001, 1e-5}, 1, true, {-0.181, 0.002});
+  const StrategyResult darker = strategy("uniform", {0.002, 1e-5}, 1, true, {-0.2, 0.002});
+  const StrategyResult biased = strategy("suns", {0.02, 0.0001}, 1, false, {-0.181, 0.002});
+  EXPECT_EQ(verdictOf({good, dark, darker}), std::vector<std::string>{"Use importance."});
+  EXPECT_EQ(verdictOf({good, dark, biased}),
+            (std::vector<std::string>{"Use importance.",
+                                      "Of 1 biased, none is significantly better at equal time."}));
+  EXPECT_EQ(verdictOf({dark, darker}),
+            (std::vector<std::string>{"None has found all light that the reference has: give more "
+                                      "samples or repeats."}));
+  EXPECT_EQ(verdictOf({dark, biased}),
+            (std::vector<std::string>{"Use suns.", "All of them are biased.",
+                                      "None of the unbiased has found all light that the reference "
+                                      "has: give more samples or repeats."}));
+}
+
 // An error below the noise of the reference, which was subtracted, is about as small as that noise.
 TEST(Verdict, KnowsThatAnErrorBelowTheReferencesNoiseIsSmall) {
   for (const double mean : {-0.001, 0.0, 0.0003}) {
@@ -92,7 +129,8 @@ TEST(Verdict, KnowsThatAnErrorBelowTheReferencesNoiseIsSmall) {
         verdictOf({strategy("bsdf", {56, 40}, 1), strategy("importance", {mean, 0.0009}, 1),
                    strategy("median-cut:8", {0.4, 0.01}, 1, false)});
     ASSERT_EQ(found.size(), 2u);
-    EXPECT_TRUE(found[0].starts_with("Use importance: at equal time bsdf, the next best, has 6"))
+    EXPECT_TRUE(found[0].starts_with(
+        "Use importance: at equal time bsdf, the next best of the unbiased, has 6"))
         << found[0];
     EXPECT_EQ(found[1], "Of 1 biased, none is significantly better at equal time.");
   }
@@ -149,6 +187,11 @@ TEST(Ratio, IsUnknownWithoutAPositiveNumber) {
   EXPECT_EQ(ratioText({1.386, 0.05}), "1.39 (1.26 to 1.53)");
   EXPECT_EQ(positiveText({685, 680}), "690 (98 to 4800)");
   EXPECT_EQ(positiveText({1e-5, 1e-4}), "not significant (+- 0.0002)");
+}
+
+TEST(Bias, OfARowThatHasMissedLightIsNoneOfItsMethod) {
+  EXPECT_EQ(biasText({-0.181, 0.002}, FoundLight::All), "-18.1 +- 0.4");
+  EXPECT_EQ(biasText({-0.181, 0.002}, FoundLight::Missed), "-18.1 (light not found)");
 }
 
 }  // namespace

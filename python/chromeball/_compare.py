@@ -45,11 +45,14 @@ class ComparisonRow(NamedTuple):
     #: mean(image - reference) / mean(reference)
     bias: float
     bias_error: float
-    #: bias / bias_error: outside -4 to 4 the strategy is biased.
+    #: bias / bias_error: outside -4 to 4 the strategy is biased, unless it has missed light.
     bias_z: float
+    #: Of an unbiased built-in strategy whose mean is significantly below the reference's: its samples have not found rare bright
+    #: light, such as a small sun, so that neither error nor bias is known.
+    missed_light: bool
     #: Of a render, the mean.
     seconds: float
-    #: 1 / (relmse seconds)
+    #: 1 / (relmse seconds); NaN where light is missed.
     efficiency: float
     #: The test of the pdf (chi_square()); NaN, and 0 degrees of freedom, for strategies that have none.
     chi_square: float
@@ -103,7 +106,7 @@ class Comparison:
         return [["strategy", "samples", "RMSE %", "relMSE", "variance", "bias %", "z", "seconds", "efficiency", "pdf"]] + [
             [r.strategy, str(r.samples), f"{100 * r.rmse:.3g}", _core.positive_text(r.relmse, r.relmse_error),
              _core.positive_text(r.variance, r.variance_error),
-             _core.significant_text(100 * r.bias, 100 * r.bias_error), f"{r.bias_z:.1f}",
+             _core.bias_text(r.bias, r.bias_error, r.missed_light), f"{r.bias_z:.1f}",
              f"{r.seconds:.3g}", f"{r.efficiency:.3g}", _pdf_text(r)]
             for r in self.rows
         ]
@@ -166,6 +169,7 @@ def compare(
         truth, squared_error = _given(reference)
     tests = {name: study.test(name) for name in names}
     rows: dict[tuple[str, int], ComparisonRow] = {}
+    lights: list[tuple[str, Any, float]] = []  # with the most samples
     of_reference = 0.0
     for i, count in enumerate(counts):
         images: dict[str, list[Any]] = {name: [] for name in names}
@@ -184,11 +188,10 @@ def compare(
             errors = _core.errors_of(images[name], truth, squared_error, study.row(name))
             rows[name, count] = _row(name, count, errors, seconds[name], tests[name])
             of_reference = max(of_reference, errors[4] / errors[0][0] if errors[0][0] > 0 else math.inf)
-    last = {name: rows[name, counts[-1]] for name in names}
-    rare = [name for name, row in last.items() if row.relmse + 1.96 * row.relmse_error >= _core.MOST_NOISE]
-    if rare:
-        warnings.warn(f"single bright samples may make up most of the error of {', '.join(rare)}: bias, efficiency and verdict are "
-                      "then those of a few repeats; give more samples or repeats", RenderWarning, stacklevel=2)
+            if count == counts[-1]:
+                lights.append((name, errors[5], rows[name, count].bias))
+    for text in _core.light_warnings(lights, reference is not None):
+        warnings.warn(text, RenderWarning, stacklevel=2)
     if of_reference > 0.1:
         warnings.warn(f"the variance of the reference is {100 * of_reference:.0f}% of a relMSE; it has been subtracted, but "
                       "intervals are wide: give more reference_samples", RenderWarning, stacklevel=2)
@@ -284,11 +287,12 @@ class _Renders:
 
 
 def _row(name: str, count: int, errors: Any, seconds: float, test: ChiSquare | None) -> ComparisonRow:
-    relmse, variance, squared_bias, bias, _ = errors
-    work = relmse[0] * seconds
+    relmse, variance, squared_bias, bias, _, light = errors
+    missed = light == _core.FoundLight.MISSED
+    work = math.nan if missed else relmse[0] * seconds
     return ComparisonRow._make([
         name, count, math.sqrt(relmse[0]) if relmse[0] >= 0 else math.nan, *relmse, *variance, *squared_bias, *bias,
-        bias[0] / bias[1] if bias[1] > 0 else math.nan, seconds, 1 / work if work > 0 else math.nan,
+        bias[0] / bias[1] if bias[1] > 0 else math.nan, missed, seconds, 1 / work if work > 0 else math.nan,
         *((*test[:3], test.mismatch) if test and test.degrees_of_freedom else (math.nan, 0, math.nan, math.nan))])
 
 

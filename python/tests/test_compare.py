@@ -346,8 +346,29 @@ def test_the_scenes_mapping_holds_for_a_probe_by_its_path(tmp_path):
         np.testing.assert_allclose(by_path.reference, in_memory.reference, rtol=1e-5)
 
 
-def test_a_few_bright_samples_are_warned_of(small):
-    scene, _ = small
-    with pytest.warns(cb.RenderWarning, match="single bright samples"):
-        cb.compare(scene, sunny(), ["uniform"], size=(16, 12), samples=[1], repeats=3, reference_samples=32)
+def sunlit(strategies, **settings):
+    """The comparison, and what is warned of. One of 30,000 samples of `uniform` meets the sun."""
+    with pytest.warns(cb.RenderWarning) as warned:
+        found = cb.compare(square_scene(), sunny(), strategies, size=(16, 12), repeats=3, **settings)
+    return found, " ".join(str(warning.message) for warning in warned)
+
+
+def test_a_few_bright_samples_are_warned_of():
+    _, told = sunlit(["uniform"], samples=[256], reference_samples=32)
+    assert "ingle bright samples may make up most of the error of uniform:" in told and "have not found" not in told
+
+
+def test_light_that_no_sample_has_found_is_no_bias():
+    found, told = sunlit(["bsdf", "importance"], samples=[1], reference_samples=256)
+    missed, good = found.rows
+    assert "The samples of bsdf have not found light that the reference has" in told and "error of bsdf" not in told
+    assert missed.missed_light and missed.bias_z < -4 and math.isnan(missed.efficiency) and not good.missed_light
+    assert found.table().splitlines()[1].count("(light not found)") == 1
+
+
+def test_a_wrong_strategy_has_missed_no_light(small):
+    scene, probe = small
+    found = cb.compare(scene, probe, [Uniform(probe, factor=2)], size=(16, 12), samples=[64], repeats=3, mis="off",
+                       reference_samples=64)
+    assert found.rows[0].bias_z < -4 and not found.rows[0].missed_light
 

@@ -47,7 +47,8 @@ bool hasGround(const D& d, const SceneContents&) {
 }
 
 constexpr std::array kDependences = {
-    Dependence{"render.ground", "a shadow catcher on `ground` (beside other shadow catchers)", hasGround},
+    Dependence{"render.ground", "a shadow catcher on `ground` (beside other shadow catchers)",
+               hasGround},
     Dependence{"camera.shutter", "anything that moves",  // at the times of other frames it may
                [](const D& d, const SceneContents& c) {
                  return !d.camera.shutter || c.moves || d.run.isOfFrames;

@@ -26,6 +26,12 @@ Json toJson(const RatioEstimate& r) {
   return {{"mean", number(r.value)}, {"low", number(r.low())}, {"high", number(r.high())}};
 }
 
+bool missesLight(const Cell& cell) { return cell.light == FoundLight::Missed; }
+
+const StrategyResult& rowOf(const StudyResults& results, const Cell& cell) {
+  return *std::ranges::find(results.strategies, cell.strategy, &StrategyResult::name);
+}
+
 Json toJson(const Cell& cell) {
   return {{"budget", cell.budget.label()},
           {"samples", cell.samples},
@@ -36,6 +42,7 @@ Json toJson(const Cell& cell) {
           {"squared_bias", toJson(cell.error.squaredBias)},
           {"bias", toJson(cell.error.bias)},
           {"mse", cell.error.mse},
+          {"missed_light", missesLight(cell)},
           {"efficiency", toJson(cell.efficiency)},
           {"reference_variance", cell.error.referenceVariance},
           {"reported_noise", number(cell.noise)},
@@ -61,7 +68,7 @@ std::string resultsCsv(const StudyResults& results) {
   std::string csv = "strategy,unbiased,budget,samples";
   for (const char* name : {"seconds", "relmse", "variance", "squared_bias", "bias", "efficiency"})
     csv += fmt::format(",{0},{0}_low,{0}_high", name);
-  csv += ",prepare_seconds,mse,reference_variance,reported_noise,invalid_samples\n";
+  csv += ",prepare_seconds,mse,reference_variance,reported_noise,invalid_samples,missed_light\n";
   for (const StrategyResult& strategy : results.strategies)
     for (const Cell& cell : strategy.cells) {
       const BiasVariance& error = cell.error;
@@ -71,9 +78,9 @@ std::string resultsCsv(const StudyResults& results) {
            {cell.seconds, error.relMse, error.variance, error.squaredBias, error.bias})
         csv += fmt::format(",{:.6g},{:.6g},{:.6g}", e.mean, e.low(), e.high());
       const RatioEstimate& r = cell.efficiency;
-      csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.4g},{:.6g},{:.6g},{:.6g},{:g}\n", r.value,
+      csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.4g},{:.6g},{:.6g},{:.6g},{:g},{}\n", r.value,
                          r.low(), r.high(), cell.prepareSeconds, error.mse, error.referenceVariance,
-                         cell.noise, cell.invalidSamples);
+                         cell.noise, cell.invalidSamples, missesLight(cell) ? "yes" : "no");
     }
   return csv;
 }
@@ -118,7 +125,8 @@ std::vector<const Cell*> ranking(const Study& study, const StudyResults& results
   for (const StrategyResult& strategy : results.strategies)
     if (const Cell* cell = budget ? findCell(strategy, *budget) : nullptr) cells.push_back(cell);
   std::ranges::stable_sort(cells, std::ranges::greater(), [](const Cell* cell) {
-    return cell->efficiency.value > 0 ? cell->efficiency.value : 0;  // unknown: last
+    if (missesLight(*cell)) return -1.0;
+    return cell->efficiency.value > 0 ? cell->efficiency.value : 0;  // unknown: last of the others
   });
   return cells;
 }
@@ -127,16 +135,14 @@ std::string resultsTable(const Study& study, const StudyResults& results) {
   const std::vector<const Cell*> cells = ranking(study, results);
   if (cells.empty()) return "no budget has been rendered with all strategies\n";
   std::string table =
-      fmt::format("{:<26} {:>24} {:>18} {:>24} {:>22}   (at {})\n", "strategy", "efficiency",
+      fmt::format("{:<26} {:>24} {:>18} {:>24} {:>24}   (at {})\n", "strategy", "efficiency",
                   "seconds", "relMSE", "bias %", cells.front()->budget.label());
   for (const Cell* cell : cells) {
-    const Estimate& bias = cell->error.bias;
-    const bool isUnbiased =
-        std::ranges::find(results.strategies, cell->strategy, &StrategyResult::name)->unbiased;
-    table += fmt::format(
-        "{:<26} {:>24} {:>18} {:>24} {:>22}\n", cell->strategy + (isUnbiased ? "" : " (biased)"),
-        ratioText(cell->efficiency), positiveText(cell->seconds), positiveText(cell->error.relMse),
-        significantText({100 * bias.mean, 100 * bias.standardError}));
+    const bool isUnbiased = rowOf(results, *cell).unbiased;
+    table += fmt::format("{:<26} {:>24} {:>18} {:>24} {:>24}\n",
+                         cell->strategy + (isUnbiased ? "" : " (biased)"),
+                         ratioText(cell->efficiency), positiveText(cell->seconds),
+                         positiveText(cell->error.relMse), biasText(cell->error.bias, cell->light));
   }
   return table;
 }
@@ -183,6 +189,12 @@ std::string positiveText(const Estimate& e) {
   return ratioText({e.mean, e.standardError / e.mean});
 }
 
+std::string biasText(const Estimate& bias, FoundLight light) {
+  const Estimate percent{100 * bias.mean, 100 * bias.standardError};
+  if (light != FoundLight::Missed) return significantText(percent);
+  return estimateText(percent).number + " (light not found)";
+}
+
 std::string ratioText(const RatioEstimate& r) {
   if (!std::isfinite(r.value) || !std::isfinite(r.high())) return "unknown";
   if (r.logError == 0) return shortNumber(r.value);
@@ -211,9 +223,17 @@ std::string alternatives(const std::vector<std::string>& names) {
   return fmt::format("{} or {}", fmt::join(names.begin(), last, ", "), *last);
 }
 
+// "the next best": of all cells, the most efficient first, or only of the unbiased, which `cells`
+// then are, where another one is before it.
+std::string nextBest(const Cell* next, const Cells& cells, const Cells& all) {
+  const auto isOther = [&](const Cell* cell) { return std::ranges::count(cells, cell) == 0; };
+  const bool follows = std::any_of(all.begin(), std::ranges::find(all, next), isOther);
+  return follows ? "the next best of the unbiased" : "the next best";
+}
+
 // Which of these cells, the most efficient first, to use: the first and those that do not differ
 // from it significantly; and how far the next one is behind.
-std::string recommendation(const Cells& cells) {
+std::string recommendation(const Cells& cells, const Cells& all) {
   const Cell& best = *cells.front();
   std::vector<std::string> names{best.strategy};
   std::string next;
@@ -222,8 +242,8 @@ std::string recommendation(const Cells& cells) {
     if (!(lead.low() > 1))
       names.push_back(cell->strategy);
     else if (next.empty())
-      next = fmt::format("{}, the next best, has {} times the relMSE of {}", cell->strategy,
-                         ratioText(lead), best.strategy);
+      next = fmt::format("{}, {}, has {} times the relMSE of {}", cell->strategy,
+                         nextBest(cell, cells, all), ratioText(lead), best.strategy);
   }
   std::string sentence = fmt::format("Use {}", alternatives(names));
   if (names.size() > 1) sentence += ": no significant difference between them at equal time";
@@ -237,8 +257,7 @@ std::string biasedLine(const StudyResults& results, const Cells& biased, const C
   for (const Cell* cell : biased) {
     const RatioEstimate lead = relativeEfficiency(*cell, best);
     if (!(lead.low() > 1)) continue;
-    const auto row = std::ranges::find(results.strategies, cell->strategy, &StrategyResult::name);
-    const auto& crossing = row->biasEqualsNoise;
+    const auto& crossing = rowOf(results, *cell).biasEqualsNoise;
     better.push_back(fmt::format(
         "{} by {}{}", cell->strategy, ratioText(lead),
         crossing ? fmt::format(" until its bias equals its noise at {} samples per pixel",
@@ -254,15 +273,21 @@ std::string biasedLine(const StudyResults& results, const Cells& biased, const C
 }  // namespace
 
 std::vector<std::string> verdict(const Study& study, const StudyResults& results) {
-  Cells unbiased, biased;
-  for (const Cell* cell : ranking(study, results)) {
-    const auto row = std::ranges::find(results.strategies, cell->strategy, &StrategyResult::name);
-    (row->unbiased ? unbiased : biased).push_back(cell);
-  }
+  Cells unbiased, biased, missed;
+  const Cells all = ranking(study, results);
+  for (const Cell* cell : all)
+    if (missesLight(*cell))
+      missed.push_back(cell);
+    else
+      (rowOf(results, *cell).unbiased ? unbiased : biased).push_back(cell);
   std::vector<std::string> sentences;
   if (unbiased.empty() && !biased.empty())
-    sentences = {recommendation(biased), "All of them are biased."};
-  if (!unbiased.empty()) sentences.push_back(recommendation(unbiased));
+    sentences = {recommendation(biased, all), "All of them are biased."};
+  if (unbiased.empty() && !missed.empty())
+    sentences.push_back(
+        fmt::format("{} has found all light that the reference has: give more samples or repeats.",
+                    biased.empty() ? "None" : "None of the unbiased"));
+  if (!unbiased.empty()) sentences.push_back(recommendation(unbiased, all));
   if (!unbiased.empty() && !biased.empty())
     sentences.push_back(biasedLine(results, biased, *unbiased.front()));
   return sentences;

@@ -20,7 +20,8 @@ std::string resultsCsv(const StudyResults& results);
 nlohmann::ordered_json resultsJson(const Study& study, const StudyResults& results,
                                    const Machine& machine);
 
-// A table for a terminal: the strategies with the largest common budget, the most efficient first.
+// A table for a terminal: the strategies with the largest common budget, the most efficient first,
+// those that have missed light last.
 std::string resultsTable(const Study& study, const StudyResults& results);
 
 // The cells of that table, in its order.
@@ -45,6 +46,10 @@ std::string significantText(const Estimate& e);
 // error exceeds the mean only if something has been subtracted.)
 std::string positiveText(const Estimate& e);
 
+// The bias in percent. That of a row that has missed light is none of its method: "-18.1 (light not
+// found)".
+std::string biasText(const Estimate& bias, FoundLight light);
+
 std::string ratioText(const RatioEstimate& r);  // "1.39 (1.22 to 1.58)"; "1" if it is exact
 
 // `digits` significant digits, without an exponent up to 1e7.
@@ -54,7 +59,8 @@ std::string shortNumber(double x, int digits = 3);
 
 // With the largest common budget, at equal time: the unbiased strategy to use, any that do not
 // differ from it significantly, and the lead over the next one; then, in one line, the biased
-// strategies that are more efficient. Empty if no budget has been rendered with all strategies.
+// strategies that are more efficient. A row that has missed light is not one to use; if all
+// unbiased ones have, a sentence says so. Empty if no budget has been rendered with all strategies.
 std::vector<std::string> verdict(const Study& study, const StudyResults& results);
 
 }  // namespace chromeball

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -55,8 +56,10 @@ Cell cellOf(const std::string& strategy, const Budget& budget, std::vector<Store
   cell.noise = mean(renders, &StoredRender::noise);
   cell.invalidSamples = mean(renders, &StoredRender::invalidSamples) * double(renders.size());
   const bool joins = rowNamed(strategy, "output").joinsPixels();
+  const bool unbiased = renders.front().unbiased;
   cell.error = biasVariance(images(std::move(renders)), reference,
                             joins ? PixelNoise::Joined : PixelNoise::Independent);
+  cell.light = foundLight(cell.error, unbiased);
   return cell;
 }
 
@@ -66,14 +69,23 @@ Estimate atLeastItsError(const Estimate& relMse) {
   return {std::max(relMse.mean, relMse.standardError), relMse.standardError};
 }
 
-// The unbiased strategy that is the most efficient with the largest common budget; if there is
-// none, the most efficient one, or the first.
+// How well a cell serves as the baseline, besides its efficiency, which is unknown where it has
+// missed light.
+int rankOf(const StrategyResult& strategy, const Cell& cell) {
+  if (cell.light == FoundLight::Missed) return 0;
+  return strategy.unbiased ? 2 : 1;
+}
+
+// The unbiased strategy that is the most efficient with the largest common budget, of those that
+// have found the light; if there is none, the most efficient biased one, or the first.
 std::string bestBaseline(const Study& study, const StudyResults& results) {
   const std::optional<Budget> budget = largestCommonBudget(study, results);
   const StrategyResult* best = nullptr;
   const auto isBetter = [&](const StrategyResult& strategy) {
-    if (!best || strategy.unbiased != best->unbiased) return !best || strategy.unbiased;
-    return relativeEfficiency(*findCell(strategy, *budget), *findCell(*best, *budget)).value > 1;
+    if (!best) return true;
+    const Cell &own = *findCell(strategy, *budget), &bests = *findCell(*best, *budget);
+    const int lead = rankOf(strategy, own) - rankOf(*best, bests);
+    return lead > 0 || (lead == 0 && relativeEfficiency(own, bests).value > 1);
   };
   for (const StrategyResult& strategy : results.strategies)
     if (budget && findCell(strategy, *budget) && isBetter(strategy)) best = &strategy;
@@ -85,7 +97,8 @@ void compareWithBaseline(StudyResults& results) {
   for (StrategyResult& strategy : results.strategies)
     for (Cell& cell : strategy.cells) {
       const Cell* other = findCell(*base, cell.budget);
-      cell.efficiency = other ? relativeEfficiency(cell, *other) : RatioEstimate{std::nan(""), 0};
+      const bool isKnown = other && cell.light != FoundLight::Missed;
+      cell.efficiency = isKnown ? relativeEfficiency(cell, *other) : RatioEstimate{std::nan(""), 0};
     }
 }
 
@@ -111,13 +124,30 @@ std::vector<PairResult> comparePairs(const Study& study, const RenderStore& stor
   std::vector<std::pair<std::string, std::vector<Image>>> sets;
   for (const StrategyResult& strategy : results.strategies)
     if (const Cell* cell = budget && strategy.unbiased ? findCell(strategy, *budget) : nullptr;
-        cell && hasSampledAllLight(*cell))
+        cell && cell->light == FoundLight::All)
       sets.emplace_back(strategy.name, images(loadRepeats(store, strategy.name, *budget)));
   for (size_t i = 0; i < sets.size(); ++i)
     for (size_t j = i + 1; j < sets.size(); ++j)
       pairs.push_back(
           {sets[i].first, sets[j].first, *budget, agreement(sets[i].second, sets[j].second)});
   return pairs;
+}
+
+// Of the unbiased strategies, with the largest common budget.
+std::vector<std::string> lightWarningsOf(const Study& study, const StudyResults& results) {
+  std::vector<LightOfRow> rows;
+  const std::optional<Budget> budget = largestCommonBudget(study, results);
+  for (const StrategyResult& strategy : results.strategies)
+    if (const Cell* cell = budget && strategy.unbiased ? findCell(strategy, *budget) : nullptr)
+      rows.push_back({strategy.name, cell->light, cell->error.bias.mean});
+  std::vector<std::string> warnings = lightWarnings(rows, !study.referenceFile.empty());
+  const auto base = std::ranges::find(rows, study.baseline, &LightOfRow::name);
+  if (base != rows.end() && base->light == FoundLight::Missed)
+    warnings.push_back(fmt::format(
+        "Efficiencies are relative to {}, which has not found the light: only their order means "
+        "something. Give another baseline.",
+        base->name));
+  return warnings;
 }
 
 std::vector<std::string> warningsOf(const Study& study, const StudyResults& results) {
@@ -145,17 +175,7 @@ std::vector<std::string> warningsOf(const Study& study, const StudyResults& resu
         "subtracted, but the confidence intervals of small errors are wide; give the "
         "reference more samples.",
         100 * worst, where));
-  std::vector<std::string> rare;
-  if (const std::optional<Budget> budget = largestCommonBudget(study, results))
-    for (const StrategyResult& strategy : results.strategies)
-      if (const Cell* cell = findCell(strategy, *budget);
-          cell && strategy.unbiased && !hasSampledAllLight(*cell))
-        rare.push_back(strategy.name);
-  if (!rare.empty())
-    warnings.push_back(fmt::format(
-        "Single bright samples may make up most of the error of {}: bias, efficiency and verdict "
-        "are then those of a few repeats. Give more samples or repeats.",
-        fmt::join(rare, ", ")));
+  std::ranges::copy(lightWarningsOf(study, results), std::back_inserter(warnings));
   if (invalid > 0)
     warnings.push_back(
         fmt::format("{:.0f} invalid samples (NaN, infinite or negative) were ignored.", invalid));

@@ -8,6 +8,7 @@
 
 #include "measure/bias_variance.h"
 #include "measure/statistics.h"
+#include "study/found_light.h"
 #include "study/render_store.h"
 
 namespace chromeball {
@@ -17,13 +18,14 @@ struct Cell {
   std::string strategy;
   Budget budget;
   BiasVariance error;
-  double samples = 0;                 // mean over the repeats
-  std::vector<double> repeatSeconds;  // render time of each repeat, in order
-  Estimate seconds;                   // its mean
-  double prepareSeconds = 0;          // time to build the strategy, once for all its renders
-  double noise = 0;                   // mean of the noise that the renders themselves report
-  double invalidSamples = 0;          // sum over the repeats
-  RatioEstimate efficiency;           // relative to the baseline with the same budget
+  double samples = 0;                  // mean over the repeats
+  std::vector<double> repeatSeconds;   // render time of each repeat, in order
+  Estimate seconds;                    // its mean
+  double prepareSeconds = 0;           // time to build the strategy, once for all its renders
+  double noise = 0;                    // mean of the noise that the renders themselves report
+  double invalidSamples = 0;           // sum over the repeats
+  FoundLight light = FoundLight::All;  // foundLight() of the error
+  RatioEstimate efficiency;  // relative to the baseline with the same budget; unknown if Missed
 };
 
 // 1 / (relMse seconds) of `cell` over that of `other`. Times are compared repeat by repeat:
@@ -46,23 +48,16 @@ struct PairResult {
   Agreement agreement;
 };
 
-// Unbiased strategies are compared for the largest common budget if their relMSE, at the upper end
-// of its interval, is at most this. A strategy above it has not yet sampled all light, so that its
-// variance is underestimated.
-inline constexpr double kMaxNoiseOfPairs = 0.25;
-inline bool hasSampledAllLight(const Cell& cell) {
-  return cell.error.relMse.high() < kMaxNoiseOfPairs;
-}
-
 struct StudyResults {
   Reference reference;
   bool referenceErrorKnown = true;
   double referenceNoise = 0;  // relative standard error of its mean pixel
   std::vector<StrategyResult> strategies;
   // The one whose efficiency is 1: that of the study, or the unbiased one that is the most
-  // efficient with the largest common budget. Its noise blurs all other efficiencies.
+  // efficient with the largest common budget, of those that have found the light. Its noise blurs
+  // all other efficiencies.
   std::string baseline;
-  std::vector<PairResult> pairs;      // all pairs of comparable unbiased strategies
+  std::vector<PairResult> pairs;      // all pairs of unbiased strategies with FoundLight::All
   std::vector<std::string> warnings;  // reasons to distrust some of the numbers
   bool complete = true;               // whether every cell of this run exists
 };

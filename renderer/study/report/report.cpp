@@ -129,11 +129,21 @@ std::string row(const Cell& cell, const StrategyResult& strategy, double mostEff
       "td><td>{6}</td><td>{7}</td><td>{8}</td><td>{9}</td><td>{10}</td></tr>\n",
       escaped(cell.strategy), width, softened(ratioText(cell.efficiency)),
       softened(positiveText(cell.error.relMse)), softened(positiveText(cell.seconds)),
-      cell.prepareSeconds,
-      softened(significantText({100 * cell.error.bias.mean, 100 * cell.error.bias.standardError})),
+      cell.prepareSeconds, softened(biasText(cell.error.bias, cell.light)),
       strategy.variance ? plusMinus(strategy.variance->slope) : "",
       strategy.relMse ? plusMinus(strategy.relMse->slope) : "",
       strategy.unbiased ? "" : softened(significantText(strategy.squaredBias)), crossing);
+}
+
+// What the table says of rows that have missed light; empty if there are none.
+std::string missedNote(const Study& study, const StudyResults& results) {
+  for (const Cell* cell : ranking(study, results))
+    if (cell->light == FoundLight::Missed)
+      return " Light not found: an unbiased strategy, whose mean is no bias of the method but "
+             "lacks "
+             "rare bright light that its few samples have not met; its error is larger than here, "
+             "its efficiency unknown.";
+  return "";
 }
 
 // The strategies with the largest common budget, the most efficient first.
@@ -201,17 +211,19 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
                        "95% confidence interval, which is in brackets where it is one of the "
                        "logarithm; not significant: the interval includes 0. Slopes "
                        "are of log error against log samples: -1 for independent samples.",
-                       at, results.baseline)));
+                       at, results.baseline) +
+           missedNote(study, results)));
   fill(page, "table", resultsHtml(study, results));
-  fill(
-      page, "pairsNote",
-      escaped(fmt::format(
-          "Unbiased strategies must agree up to noise. The test is Welch's t-test on each tile of "
-          "{0} x {0} pixels with {1}; p is the probability of the largest difference of a tile if "
-          "there is only noise, corrected for the number of tiles (Sidak). By chance one of "
-          "twenty pairs has p below 0.05. Strategies whose relMSE may be above {2:g} are excluded, "
-          "because they have not sampled all light yet.",
-          Agreement::kTile, at, kMaxNoiseOfPairs)));
+  fill(page, "pairsNote",
+       escaped(fmt::format(
+           "Unbiased strategies must agree up to noise. The test is Welch's t-test on each tile of "
+           "{0} x {0} pixels with {1}; p is the probability of the largest difference of a tile if "
+           "there is only noise, corrected for the number of tiles (Sidak). By chance one of "
+           "twenty pairs has p below 0.05. Strategies whose relMSE may be above {2:g}, or whose "
+           "mean "
+           "lacks light that the reference has, are excluded, because they have not sampled all "
+           "light yet.",
+           Agreement::kTile, at, kMaxNoiseOfPairs)));
   fill(page, "pairs", pairsHtml(results));
   std::string probes;
   for (const auto& [name, directions] : scene.directions) probes += dots(name, directions);
