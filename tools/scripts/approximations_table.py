@@ -21,7 +21,7 @@ def rows(folder, name, reference):
     for strategy in result['strategies']:
         cell = strategy['cells'][-1]
         bias = cell['bias']
-        sure = bias['low'] > 0 or bias['high'] < 0
+        sure = (bias['low'] > 0 or bias['high'] < 0) and not cell.get('missed_light')
         yield (strategy['name'], cell['seconds']['mean'] + cell['prepare_seconds'],
                cell['relmse']['mean'], f'{100 * bias["mean"]:+.1f}' if sure else '',
                flip(folder / name / 'renders' / f'{strategy["name"].replace(":", ".")}-{cell["budget"]}-1.exr',

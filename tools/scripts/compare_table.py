@@ -37,6 +37,9 @@ def main():
             for _, result in columns:
                 by_name = {s['name']: s for s in result['strategies']}
                 here, base = cell(by_name[name], label), cell(by_name[BASE], label)
+                if here.get('missed_light'):
+                    row.append('light not found')
+                    continue
                 gain = base['relmse']['mean'] / here['relmse']['mean']
                 bias = here['bias']
                 sure = bias['low'] > 0 or bias['high'] < 0

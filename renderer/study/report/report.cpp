@@ -140,9 +140,8 @@ std::string missedNote(const Study& study, const StudyResults& results) {
   for (const Cell* cell : ranking(study, results))
     if (cell->light == FoundLight::Missed)
       return " Light not found: an unbiased strategy, whose mean is no bias of the method but "
-             "lacks "
-             "rare bright light that its few samples have not met; its error is larger than here, "
-             "its efficiency unknown.";
+             "lacks rare bright light that its few samples have not met; its error is larger than "
+             "here, its efficiency unknown.";
   return "";
 }
 
@@ -220,9 +219,8 @@ std::string reportHtml(const Study& study, const RenderStore& store, const Study
            "{0} x {0} pixels with {1}; p is the probability of the largest difference of a tile if "
            "there is only noise, corrected for the number of tiles (Sidak). By chance one of "
            "twenty pairs has p below 0.05. Strategies whose relMSE may be above {2:g}, or whose "
-           "mean "
-           "lacks light that the reference has, are excluded, because they have not sampled all "
-           "light yet.",
+           "mean lacks light that the reference has, are excluded, because they have not sampled "
+           "all light yet.",
            Agreement::kTile, at, kMaxNoiseOfPairs)));
   fill(page, "pairs", pairsHtml(results));
   std::string probes;
