@@ -144,9 +144,8 @@ void addPlateScale(const CompositeEntry& composite, const PlateScale& found, Mes
     addWarning(
         messages,
         "the pixels around the objects scatter by {:.2g}%: they show more than one surface, or "
-        "light "
-        "and shadow, and the probe's scale is a mean that fits none; place the objects where the "
-        "ground is even, or give the scale as numbers",
+        "light and shadow, and the probe's scale is a mean that fits none; place the objects where "
+        "the ground is even, or give the scale as numbers",
         100 * found.scatter);
 }
 
