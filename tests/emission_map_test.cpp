@@ -164,10 +164,12 @@ TEST_F(TexturedLamp, OnlyTrianglesThatTheLitTexelTouchesAreChosen) {
     const int quad = int(point.instance) - 1, x = quad % kQuads, y = quad / kQuads;
     EXPECT_TRUE(x >= 8 && x <= 13 && y >= 2 && y <= 7) << x << ", " << y;
     EXPECT_GT(emitters->pdf(point.instance, point.triangle, 1, 1), 0);
+    EXPECT_FALSE(emitters->knowsAsBlack(point.instance, point.triangle));
     lit += x >= 10 && x <= 11 && y >= 4 && y <= 5, ++all;
   }
   EXPECT_GT(lit / all, 0.08);
   EXPECT_EQ(emitters->pdf(1, 0, 1, 1), 0);  // a corner of the lamp
+  EXPECT_TRUE(emitters->knowsAsBlack(1, 0));
   EXPECT_EQ(emitters->pdf(0, 0, 1, 1), 0);  // the floor
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/emitters.h"
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "lighting/emission_map.h"
@@ -115,7 +117,9 @@ Emitters::Emitters(const Scene& scene, Found found)
       densities_(std::move(found.densities)),
       choice_(1, int(triangles_.size()), std::max(CdfRows::kGuide, int(triangles_.size()))) {
   const double total = choice_.setRow(0, found.powers);
-  for (double radiance : found.radiances) areaPdfs_.push_back(float(radiance / total));
+  constexpr float kLeast = std::numeric_limits<float>::min();
+  for (double radiance : found.radiances)
+    areaPdfs_.push_back(radiance > 0 ? std::max(float(radiance / total), kLeast) : 0.0f);
 }
 
 Emitters::Point Emitters::choose(double choice, float v) const {

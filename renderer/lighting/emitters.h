@@ -29,6 +29,9 @@ class Emitters : public LightSource {
               std::vector<DirectionSample>& out) const override;
   float pdfOfHit(const LightPoint& point, const Surface& surface, uint32_t instance,
                  uint32_t triangle) const override;
+  bool knowsAsBlack(uint32_t instance, uint32_t triangle) const override {
+    return areaPdf(instance, triangle) == 0;
+  }
   std::vector<std::string> groups() const override { return {}; }
 
   struct Point {
@@ -48,7 +51,7 @@ class Emitters : public LightSource {
 
  private:
   vec3 placeOf(const Point& point, const Instance& instance, float time) const;
-  // 1/m^2; 0 where nothing emits.
+  // 1/m^2; 0 only where nothing emits.
   float areaPdf(size_t instance, size_t triangle) const {
     const Densities& of = densities_[instance];
     return areaPdfs_[of.first + (of.areByTriangle ? triangle : 0)];

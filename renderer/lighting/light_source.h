@@ -83,6 +83,10 @@ class LightSource {
     return 0;
   }
 
+  // Whether a triangle of an emissive material is known to be black, texture filters apart: saves
+  // looking its emission up.
+  virtual bool knowsAsBlack(uint32_t /*instance*/, uint32_t /*triangle*/) const { return false; }
+
   // escaped() for up to kMaxMany rays, or batch(). Strategies override it where table reads of
   // several rays can overlap.
   static constexpr size_t kMaxMany = 64;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/texture.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
+#include <bit>
 
 #include "base/memory.h"
 #include "base/progress.h"
@@ -36,19 +39,15 @@ float decodeSrgbFast(float c) {
   return kSrgbCurve[i] + (x - float(i)) * (kSrgbCurve[i + 1] - kSrgbCurve[i]);
 }
 
-const std::array<float, 256> kLinear8 = [] {
-  std::array<float, 256> table;
-  for (int i = 0; i < 256; ++i) table[i] = float(i) * (1 / 255.0f);
-  return table;
-}();
-
 using Float4 = float __attribute__((vector_size(16)));  // RGBA
 
 Float4 mix(Float4 a, Float4 b, float t) { return a * (1 - t) + b * t; }
 
-Float4 decode(const std::array<uint8_t, 4>& t, bool srgb) {
-  const auto& curve = srgb ? kSrgb8 : kLinear8;
-  return Float4{curve[t[0]], curve[t[1]], curve[t[2]], kLinear8[t[3]]};
+[[gnu::always_inline]] inline Float4 decode(const std::array<uint8_t, 4>& t, bool srgb) {
+  const __m128i codes = _mm_cvtepu8_epi32(_mm_cvtsi32_si128(std::bit_cast<int>(t)));
+  const auto linear = Float4(_mm_cvtepi32_ps(codes)) * (1 / 255.0f);
+  if (!srgb) return linear;
+  return Float4{kSrgb8[t[0]], kSrgb8[t[1]], kSrgb8[t[2]], linear[3]};
 }
 
 Float4 decode(const vec4& t, bool srgb) {
@@ -158,7 +157,9 @@ Float4 trilinear(const Texture& t, vec2 uv, float texels, const Fetch& fetch) {
 template <class Mean>
 [[gnu::always_inline]] inline vec4 weighted(const Texture& t, const Mean& mean) {
   const bool srgb = t.srgb;
-  const auto plain = [srgb](const TexelGrid& g, int x, int y) { return fetch(g, srgb, x, y); };
+  const auto plain = [srgb](const TexelGrid& g, int x, int y) __attribute__((always_inline)) {
+    return fetch(g, srgb, x, y);
+  };
   if (!t.weightedByAlpha) return rgba(mean(plain));
   const vec4 sum = rgba(mean([srgb](const TexelGrid& g, int x, int y) {
     const Float4 texel = fetch(g, srgb, x, y);

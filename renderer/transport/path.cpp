@@ -99,8 +99,10 @@ Rgb PathTracer::foundEmission(const LightPoint& from, float pdf, const vec3& dir
   if (surface.material->unlit || pdf == 0)
     return emittedRadiance(world_.scene, instance, surface, -direction);
   float lightPdf = 0;
-  for (const auto& source : world_.sources.all)
+  for (const auto& source : world_.sources.all) {
+    if (source->knowsAsBlack(hit.instance, hit.triangle)) return Rgb(0);
     lightPdf += source->pdfOfHit(from, surface, hit.instance, hit.triangle);
+  }
   // A texture filter would have light where light samples find none.
   Surface unfiltered = surface;
   unfiltered.footprint = 0;
