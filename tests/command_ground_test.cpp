@@ -221,6 +221,44 @@ TEST_F(SlowCommandGround, TheGroundAroundTheObjectsTellsTheScale) {
   EXPECT_NEAR(sum.z / sum.y, 0.7 / 0.65, 0.12);
 }
 
+// A rug in the middle of a floor of another colour, both around the objects: by the part of the
+// plate that shows the rug alone, the light has its brightness and colour.
+TEST_F(SlowCommandGround, APartOfThePlateTellsTheScale) {
+  Image plate(2 * kWidth, 2 * kHeight, 3);  // of twice the image's size
+  for (size_t i = 0; i < plate.pixels(); ++i) {
+    const int x = int(i) % plate.width, y = int(i) / plate.width;
+    const bool isRug = x >= 40 && x < 60 && y >= 44, isDark = (x / 8 + y / 8) % 2 == 0;
+    plate.setRgb(i, isRug ? Rgb(0.4f, 0.3f, 0.2f) : Rgb(isDark ? 0.01f : 0.06f));
+  }
+  writeImage(path("plate.exr"), plate);
+  const std::string lines = "ground = true\nground_reflectance = 0.5";
+  const auto part = [&](const char* value) {
+    return scene(lines + "\nground_in_plate = " + value, "", "scale = \"plate\"");
+  };
+  const auto found = [&](const std::string& file) {
+    render(file, {"--size", "48x32", "--stats", path("stats.json")});
+    return jsonOfFile(path("stats.json"))["probe_scale"];
+  };
+  const auto around = found(scene(lines, "", "scale = \"plate\""));
+  EXPECT_NE(messages_.find("(`ground_in_plate` in [composite])"), std::string::npos) << messages_;
+  const auto rug = found(part("[40, 44, 60, 64]"));
+  EXPECT_EQ(rug["pixels"], 100);
+  EXPECT_NE(messages_.find("by 100 pixels of the ground with reflectance 0.5; they scatter by 0%"),
+            std::string::npos)
+      << messages_;
+  const Rgb irradiance = Rgb(exactIrradiance(probe_, std::array{vec3(0, 1, 0)})[0]);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(double(rug["scale"][c]), kPiD * (0.4 - 0.1 * c) / (0.5 * double(irradiance[c])),
+                1e-3 * double(rug["scale"][c]));
+  EXPECT_LT(double(around["scale"][0]), 0.3 * double(rug["scale"][0]));
+
+  refuse(part("[40, 44, 60]"), "`ground_in_plate` must be four numbers");
+  refuse(part("[60, 44, 40, 64]"), "left before right");
+  refuse(part("[-1, 44, 40, 64]"), "`ground_in_plate` must be");
+  refuse(part("[40, 44, 60, 65]"), "`ground_in_plate` is not inside the plate");
+  refuse(part("[40, 44, 40.1, 44.1]"), "no pixel shows the ground");
+}
+
 TEST_F(SlowCommandGround, RefusesWhatDoesNotFit) {
   refuse(scene(""), "[composite] has no `local_scene`; name its nodes, or give `ground = true`");
   refuse(scene("ground = false"), "[composite] has no `local_scene`");

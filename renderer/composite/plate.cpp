@@ -59,6 +59,17 @@ std::vector<size_t> pixelsThatShow(int ground, const Bounds& part, const Scene& 
   return pixels;
 }
 
+std::vector<size_t> pixelsIn(const vec4& part, int width, int height) {
+  std::vector<size_t> pixels;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const vec2 middle((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height));
+      if (middle.x >= part.x && middle.x <= part.z && middle.y >= part.y && middle.y <= part.w)
+        pixels.push_back(size_t(y) * size_t(width) + size_t(x));
+    }
+  return pixels;
+}
+
 namespace {
 
 std::vector<double> luminancesOf(const Image& plate, const std::vector<size_t>& pixels) {

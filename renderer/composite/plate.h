@@ -39,6 +39,10 @@ struct PlateScale {
 std::vector<size_t> pixelsThatShow(int ground, const Bounds& part, const Scene& localScene,
                                    const Camera& camera, int width, int height);
 
+// The pixels whose middle lies in a part of an image, in fractions of its width and height: left,
+// top, right, bottom.
+std::vector<size_t> pixelsIn(const vec4& part, int width, int height);
+
 // The reflectance of the ground in a photograph that shows a white surface in the ground's light as
 // 1: the median luminance. Typical exposures come near; `range` bounds it.
 float reflectanceInPhotograph(const Image& plate, const std::vector<size_t>& pixels,

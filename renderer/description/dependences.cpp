@@ -152,6 +152,9 @@ constexpr std::array kDependences = {
     Dependence{
         "composite.ground_reflectance_range", "`[probe] scale = \"plate\"`",
         [](const D& d, const SceneContents&) { return !d.composite || d.probe.isScaledByPlate; }},
+    Dependence{
+        "composite.ground_in_plate", "`[probe] scale = \"plate\"`",
+        [](const D& d, const SceneContents&) { return !d.composite || d.probe.isScaledByPlate; }},
 };
 
 }  // namespace

@@ -100,6 +100,7 @@ PartJson partOf(const CompositeEntry& entry) {
       {"ground", entry.groundReflectance ? numbersIn(*entry.groundReflectance) : "auto"},
       {"range", numbersIn(entry.groundReflectanceRange)},
       {"nodes", PartJson::array()}};
+  if (entry.groundInPlate) part["groundInPlate"] = numbersIn(*entry.groundInPlate);
   for (const std::string& node : entry.localScene) part["nodes"].push_back(node);
   return part;
 }

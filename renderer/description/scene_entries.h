@@ -70,6 +70,7 @@ struct CompositeEntry {
   std::vector<std::string> localScene;
   std::optional<Rgb> groundReflectance;  // nullopt: typical, or by the plate (composite/plate.h)
   vec2 groundReflectanceRange{0.1f, 0.5f};
+  std::optional<vec4> groundInPlate;  // left, top, right, bottom: fractions of the plate
 };
 
 // A polygon of the probe that becomes a source of its own ([[source]]).

@@ -49,6 +49,14 @@ void planPlate(const Settings& s, RenderDescription& description) {
   const Image plate = readPlate(*composite.plateFile, &composite.messages, &decoding);
   composite.isPhotograph = !decoding.empty();
   composite.messages.insert(composite.messages.end(), decoding.begin(), decoding.end());
+  if (std::optional<vec4>& part = composite.entry.groundInPlate) {
+    const vec4 whole(plate.width, plate.height, plate.width, plate.height);
+    if (part->z > whole.z || part->w > whole.w)
+      throwInput("{}: `ground_in_plate` is not inside the plate, {} of {}x{} pixels",
+                 description.origins.of("composite.ground_in_plate"), *composite.plateFile,
+                 plate.width, plate.height);
+    *part /= whole;
+  }
   std::optional<ImageSize>& size = description.size;
   if (!size) size = ImageSize{plate.width, plate.height};
   composite.plate = scaledPlate(plate, size->width, size->height, *composite.plateFile);

@@ -13,6 +13,15 @@ void readGround(const Section& section, CompositeEntry& composite, Origins& orig
     if (!(composite.groundReflectanceRange.x <= composite.groundReflectanceRange.y))
       e.mustBe("two numbers, the smaller one first");
   }
+  if (const Entry e = section["ground_in_plate"]) {
+    if (!e.isArrayOf(4)) e.mustBe(e.setting->form);
+    origins.set("composite.ground_in_plate", e.location());
+    vec4 part;
+    for (int i = 0; i < 4; ++i) part[i] = float(e.element(size_t(i)).number());
+    if (!(part.x < part.z && part.y < part.w))
+      e.mustBe("[left, top, right, bottom], left before right and top before bottom");
+    composite.groundInPlate = part;
+  }
 }
 
 }  // namespace
@@ -35,7 +44,8 @@ void readComposite(const Section& section, SceneFile& scene) {
   });
   if (local && composite.localScene.empty())
     failAt(local.location(), "`local_scene` must name at least one node");
-  for (const char* key : {"ground_height", "ground_reflectance", "ground_reflectance_range"})
+  for (const char* key :
+       {"ground_height", "ground_reflectance", "ground_reflectance_range", "ground_in_plate"})
     if (const Entry e = section[key]; e && !hasGround)
       failAt(e.location(), "`{}` needs `ground = true`", key);
   readGround(section, composite, scene.origins);

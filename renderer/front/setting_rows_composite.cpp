@@ -43,6 +43,14 @@ std::vector<Setting> compositeRows() {
        .absent = "0.1, 0.5: asphalt to dry sand",
        .help = "Between what the ground's reflectance may be: the uncertainty of `[probe] scale = "
                "\"plate\"`."},
+      {.key = "ground_in_plate",
+       .type = Compound,
+       .form = "four numbers, [left, top, right, bottom]",
+       .range = {.min = 0},
+       .unit = "pixels of the plate's file, from its top left",
+       .absent = "where the plane is seen around the objects",
+       .help = "A part of the plate that shows the ground and nothing else, for `[probe] scale = "
+               "\"plate\"`."},
       {.key = "mode",
        .type = Choice,
        .fallback = "difference",

@@ -132,21 +132,25 @@ void addPlateScale(const CompositeEntry& composite, const PlateScale& found, Mes
   const Rgb& scale = found.scale;
   const double grey = luminance(glm::dvec3(found.reflectance));
   const vec2& range = composite.groundReflectanceRange;
+  const bool isGiven = composite.groundInPlate.has_value();
+  const double percent = 100 * found.scatter;
+  const std::string scatter =
+      percent < 10 ? fmt::format("{:.2g}", percent) : fmt::format("{:.0f}", percent);
   addNote(messages,
-          "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground around the "
-          "objects with reflectance {:.3g}; they scatter by {:.2g}%; reflectances of {:.3g} to "
+          "the probe's scale is {:.4g},{:.4g},{:.4g} by {} pixels of the ground {}with "
+          "reflectance {:.3g}; they scatter by {}%; reflectances of {:.3g} to "
           "{:.3g} make it {:.3g} to "
           "{:.3g} times that",
-          scale.x, scale.y, scale.z, found.pixels, grey, 100 * found.scatter, range.x, range.y,
-          grey / double(range.y), grey / double(range.x));
+          scale.x, scale.y, scale.z, found.pixels, isGiven ? "" : "around the objects ", grey,
+          scatter, range.x, range.y, grey / double(range.y), grey / double(range.x));
   constexpr double kMostScatter = 0.5;  // of one surface, with its texture
   if (found.scatter > kMostScatter)
     addWarning(
         messages,
-        "the pixels around the objects scatter by {:.2g}%: they show more than one surface, or "
-        "light and shadow, and the probe's scale is a mean that fits none; place the objects where "
-        "the ground is even, or give the scale as numbers",
-        100 * found.scatter);
+        "the pixels {} scatter by {}%: they show more than one surface, or light and shadow, "
+        "and the probe's scale is a mean that fits none; say which part of the plate shows the "
+        "ground alone (`ground_in_plate` in [composite])",
+        isGiven ? "of the ground" : "around the objects", scatter);
 }
 
 }  // namespace

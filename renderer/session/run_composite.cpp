@@ -248,10 +248,13 @@ Rgb groundReflectance(const CompositeDescription& composite, const std::vector<s
   return Rgb(reflectanceInPhotograph(composite.plate, pixels, entry.groundReflectanceRange));
 }
 
-// The pixels that show the ground around the objects, no farther from their box than its diagonal:
-// there their shadows fall, while the rest of the plane is often not the ground in the photograph.
-// All that show the plane if these are few.
+// The pixels that show the ground: as given, or around the objects, no farther from their box than
+// its diagonal: there their shadows fall, while the rest of the plane is often not the ground in
+// the photograph. All that show the plane if these are few.
 std::vector<size_t> pixelsOfGround(const LoadedScene& loaded) {
+  const RenderDescription& description = loaded.description;
+  if (const auto& part = description.composite->entry.groundInPlate)
+    return pixelsIn(*part, description.settings.width, description.settings.height);
   constexpr size_t kFew = 64;
   Scene local = loaded.scene;
   local.instances.clear();
@@ -266,7 +269,7 @@ std::vector<size_t> pixelsOfGround(const LoadedScene& loaded) {
   const auto ground = std::ranges::find(local.nodeNames, kGroundNode);
   const auto within = [&](const Bounds& part) {
     return pixelsThatShow(int(ground - local.nodeNames.begin()), part, local, loaded.camera,
-                          loaded.description.settings.width, loaded.description.settings.height);
+                          description.settings.width, description.settings.height);
   };
   const float reach = float(glm::length(objects.size()));
   const std::vector<size_t> around = within({objects.min - reach, objects.max + reach});

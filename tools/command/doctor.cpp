@@ -142,7 +142,8 @@ void run(const DoctorArguments& arguments) {
   else
     print(found);
   if (!found.missing.empty()) throwRun("missing: {}", fmt::join(found.missing, "; "));
-  if (!arguments.json) fmt::print("nothing is missing\n");
+  if (!arguments.json)
+    fmt::print("nothing{} is missing\n", found.images.version.empty() ? " else" : "");
 }
 
 }  // namespace
