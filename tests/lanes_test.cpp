@@ -215,7 +215,7 @@ TEST(Lanes, PathsLeaveAtOtherSurfaces) {
     WidePaths wide;
     PathBatch rest;
     std::array<Rgb, 16> radiances;
-    wide.follow(cameras, tracer, context, rest, radiances);
+    wide.trace(cameras, tracer, context, rest, radiances);
     return wide.left().size();
   };
   PathSettings settings;

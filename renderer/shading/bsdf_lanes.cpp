@@ -216,6 +216,10 @@ Vector PlainBsdfLanes::normal() const {
   return chosen(isLambertian_, lambert_.normal(), metallicRoughness_->normal());
 }
 
+Int8 PlainBsdfLanes::hasBroad() const {
+  return metallicRoughness_ ? isLambertian_ | metallicRoughness_->hasBroad() : isLambertian_;
+}
+
 BsdfLanesValue PlainBsdfLanes::evaluate(const Vector& wi) const {
   if (!metallicRoughness_) return lambert_.evaluate(wi);
   const BsdfLanesValue other = metallicRoughness_->evaluate(wi);

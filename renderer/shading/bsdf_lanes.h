@@ -72,6 +72,7 @@ class MetallicRoughnessLanes {
   BsdfLanesValue evaluate(const Lanes3<Float8>& wi) const;
   BsdfLanesSample sample(Float8 u, Float8 v, Float8 lobe) const;
   const Lanes3<Float8>& normal() const { return frame_.z; }
+  Int8 hasBroad() const { return ~isSmooth_ | (specularProbability_ < 1); }
 
  private:
   struct Albedo {  // SpecularAlbedo
@@ -119,6 +120,7 @@ class PlainBsdfLanes {
   BsdfLanesValue evaluate(const Lanes3<Float8>& wi) const;
   BsdfLanesSample sample(Float8 u, Float8 v, Float8 lobe) const;
   Lanes3<Float8> normal() const;
+  Int8 hasBroad() const;  // as Bsdf::has()
 
  private:
   Int8 isLambertian_;

@@ -121,7 +121,7 @@ struct PathContext {
   }
   // Adds the record of a guided bounce at the end of its path.
   void addRecord(const GuidedBounce& bounce, const Rgb& radiance) const {
-    if (!records || bounce.record.lobesPdf == 0) return;
+    if (!records || bounce.record.lobesPdf == 0 || bounce.isNew) return;  // new: the path has ended
     BounceRecord record = bounce.record;
     record.found = std::fabs(luminance(radiance - bounce.before));
     if (record.found > 0 && std::isfinite(record.found)) records->bounces.push_back(record);

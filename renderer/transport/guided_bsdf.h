@@ -8,6 +8,11 @@
 
 namespace chromeball {
 
+// Each bounce that the guide does not choose has 1 / (1 - fraction) of the BSDF's weight: on long
+// paths the product would grow without bound, and the variance with it. So a path has no guide once
+// its pdf / BSDF pdf (PathState::guideRatio) is below the first; the second avoids overflow.
+inline constexpr float kLeastGuideRatio = 1.0f / 8, kLargestGuideRatio = 1e20f;
+
 // Broad bounces are drawn from a mixture of the BSDF and the guide's lobes at the position
 // (one-sample model; Veach 1997, section 9.2.4). Narrow and delta lobes are not guided, nor are
 // BSDFs with a pdf above kConcentratedPdf in the mirror direction or straight behind the surface:

@@ -50,7 +50,7 @@ std::span<const Rgb> PathBatch::traced(const CameraSamples& cameras, const PathT
   batch.clear();
   context.counts.camera += cameras.size();
   if (cameras.size() <= WidePaths::kMaxPaths && WidePaths::serves(tracer, context)) {
-    wide.follow(cameras, tracer, context, batch, radiances);
+    wide.trace(cameras, tracer, context, batch, radiances);
     batch.follow(tracer, context);
     for (size_t k = 0; k < wide.left().size(); ++k) radiances[wide.left()[k]] = batch.radiance(k);
   } else {

@@ -110,18 +110,14 @@ Rgb PathTracer::foundEmission(const LightPoint& from, float pdf, const vec3& dir
          bsdfSampleWeight(settings_.mis, pdf, lightPdf);
 }
 
-// Each bounce that the guide does not choose has 1 / (1 - fraction) of the BSDF's weight: on long
-// paths the product would grow without bound, and the variance with it.
 const CausticGuide* PathTracer::guideOf(const PathState& state) const {
-  constexpr float kLeastRatio = 1.0f / 8;
-  return state.guideRatio < kLeastRatio ? nullptr : settings_.caustics;
+  return state.guideRatio < kLeastGuideRatio ? nullptr : settings_.caustics;
 }
 
 // Notes a bounce that the guide might have chosen. The light found after the first one is recorded.
 void PathTracer::noteGuided(PathState& state, const GuidedBsdf::Bounce& bounce,
                             const PathContext& context) {
-  constexpr float kLargest = 1e20f;  // no overflow on long paths
-  state.guideRatio = std::min(state.guideRatio * bounce.ratio, kLargest);
+  state.guideRatio = std::min(state.guideRatio * bounce.ratio, kLargestGuideRatio);
   if (context.records && bounce.lobesPdf > 0 && state.guided.record.lobesPdf == 0)
     state.guided = {{0, bounce.lobesPdf, bounce.bsdfPdf, bounce.fraction}, {}, true};
 }

@@ -9,12 +9,19 @@
 
 namespace chromeball {
 
+// What guided bounces leave on paths, by the cameras' numbers (PathState).
+struct GuidedPaths {
+  LaneArray<float> ratio;                           // guideRatio
+  std::array<GuidedBounce, kMostInArrays> bounces;  // the first of each, for its record
+};
+
 // What is followed, by which settings, and where the results go.
 struct LaneTask {
   const CameraSamples& cameras;
   const PathTracer& tracer;
   PathContext& context;
   std::span<Rgb> radiances;
+  GuidedPaths& guided;
 
   const World& world() const { return tracer.world(); }
   const PathSettings& settings() const { return tracer.settings(); }

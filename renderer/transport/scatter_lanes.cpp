@@ -21,6 +21,8 @@ Float8 widenedBy(Float8 widening, Float8 pdf) {
   return pdf > 0 ? widening * spread : Float8{};
 }
 
+bool hasSources(const LaneTask& task) { return !task.world().sources.all.empty(); }
+
 }  // namespace
 
 void ScatterLanes::fillVertices(const LaneTask& task, const PathArrays& paths) {
@@ -57,14 +59,17 @@ void ScatterLanes::scatter(const LaneTask& task, const PathArrays& paths,
   drawNumbers(task, paths, depth);
   task.lighting().sampleArrays(std::span(numbers_[dimension::kLight]).first(paths.size),
                                numbers_[dimension::kLight + 1].data(), lights_);
-  const std::span ids(paths.id.data(), paths.size);
-  sceneLights_.draw(task.world(), task.cameras, ids, depth, vertices_, task.context);
+  sceneLights_.clear();
   shadows_.size = next.size = 0;
   shadows_.records.clear();
   for (size_t i = 0; i < paths.size; i += kLanes) scatterLanes(task, paths, depth, i, next);
   task.context.counts.bounce += next.size;
   traceShadowRays(task);
-  if (!sceneLights_.isEmpty()) sceneLights_.trace(task.tracer, keys, task.context, task.radiances);
+  if (hasSources(task)) sceneLights_.trace(task, keys);
+  for (size_t k = 0; task.settings().caustics && k < next.size; ++k) {
+    const size_t id = size_t(next.id[k]);
+    task.guided.bounces[id].startRest(task.radiances[id]);
+  }
 }
 
 // As PathTracer::scatterAs(), with DirectLight::deferDrawn().
@@ -77,11 +82,14 @@ void ScatterLanes::scatterLanes(const LaneTask& task, const PathArrays& paths, i
   material.roughness = larger(material.roughness, L::squareRoot(minAlpha));  // widen()
   const PlainBsdfLanes bsdf(material, vertices_.normal.load(i), vertices_.geometricNormal.load(i),
                             wo, task.world().bsdfTables.energy.get());
-  const Vector throughput = paths.throughput.load(i);
+  const Vector throughput = paths.throughput.load(i), position = vertices_.position.load(i);
+  const Float8 ratio = ratiosOf(task, paths, i);
+  const Int8 mayBeGuided = isHere & ~(ratio < kLeastGuideRatio);
+  const GuidedBsdfLanes guided(bsdf, position, wo, mayBeGuided, task.settings().caustics);
 
   const Vector toLight = lights_.direction.load(i);
   const Float8 lightPdf = loadLanes(&lights_.pdf[i]);
-  const BsdfLanesValue value = bsdf.evaluate(toLight);
+  const BsdfLanesValue value = guided.evaluate(toLight);
   const Float8 weight = weightOfLightSample(task.settings().mis, lightPdf, value.pdf);
   const LanePacking lit(bitsOf(isHere & (lightPdf > 0) & ~isBlack(value.fCos)));
   const size_t s = shadows_.size;
@@ -91,18 +99,20 @@ void ScatterLanes::scatterLanes(const LaneTask& task, const PathArrays& paths, i
   lit.store(&shadows_.id[s], loadLanes(&paths.id[i]));
   shadows_.size += lit.count();
   if (task.context.records) recordSamples(i, lit.bits(), value, bsdf.normal());
-  if (!sceneLights_.isEmpty())
-    sceneLights_.scatter(i, bsdf, throughput, task.settings().mis, vertices_, paths.id);
+  if (hasSources(task))
+    sceneLights_.scatter(task, paths, depth, i, vertices_, guided, bsdf.normal(), throughput);
 
-  const BsdfLanesSample bounce = bsdf.sample(unitsOf(numbers_[dimension::kBsdf], i),
-                                             unitsOf(numbers_[dimension::kBsdf + 1], i),
-                                             unitsOf(numbers_[dimension::kLobe], i));
+  const auto number = [&](int dimension) { return unitsOf(numbers_[size_t(dimension)], i); };
+  const GuidedBsdfLanes::Bounce bounce =
+      guided.sample(number(dimension::kBsdf), number(dimension::kBsdf + 1),
+                    number(dimension::kLobe), number(dimension::kBounce));
   Vector weighted = throughput * bounce.weight;
   Int8 goesOn = isHere & bounce.isValid;
+  if (guided.isGuided()) noteGuided(task, paths, i, bounce, goesOn, guided.fraction());
   if (depth >= kFirstRoulette) {  // as survivesRoulette()
     const Float8 largest = larger(larger(weighted.x, weighted.y), weighted.z);
-    const Float8 survival = smaller(largest, L::splat(1));
-    goesOn &= ~(unitsOf(numbers_[dimension::kRoulette], i) >= survival);
+    const Float8 survival = smaller(largest * (ratio * bounce.ratio), L::splat(1));
+    goesOn &= ~(number(dimension::kRoulette) >= survival);
     weighted = {weighted.x / survival, weighted.y / survival, weighted.z / survival};
   }
   const LanePacking on(bitsOf(goesOn));
@@ -116,12 +126,33 @@ void ScatterLanes::scatterLanes(const LaneTask& task, const PathArrays& paths, i
   on.store(&next.scattered[n], loadLanes(&paths.scattered[i]) | (bounce.pdf != 0));
   const Float8 widening = loadLanes(&paths.widening[i]);
   on.store(&next.widening[n], widening);
-  on.store(&next.minAlpha[n], larger(minAlpha, widenedBy(widening, bounce.pdf)));
+  on.store(&next.minAlpha[n], larger(minAlpha, widenedBy(widening, bounce.bsdfPdf)));
   next.size += on.count();
   if (!next.keepsVertices) return;
-  next.position.store(n, vertices_.position.load(i), on);
+  next.position.store(n, position, on);
   next.normal.store(n, bsdf.normal(), on);
   next.throughputBefore.store(n, throughput, on);
+}
+
+Float8 ScatterLanes::ratiosOf(const LaneTask& task, const PathArrays& paths, size_t first) {
+  Float8 ratios = L::splat(1);
+  if (!task.settings().caustics) return ratios;
+  for (size_t k = 0; k < kLanes && first + k < paths.size; ++k)
+    ratios[k] = task.guided.ratio[size_t(paths.id[first + k])];
+  return ratios;
+}
+
+// As PathTracer::noteGuided().
+void ScatterLanes::noteGuided(const LaneTask& task, const PathArrays& paths, size_t first,
+                              const GuidedBsdfLanes::Bounce& bounce, Int8 isHere, float fraction) {
+  forBits(bitsOf(isHere), [&](unsigned k) {
+    const size_t id = size_t(paths.id[first + k]);
+    float& ratio = task.guided.ratio[id];
+    ratio = std::min(ratio * bounce.ratio[k], kLargestGuideRatio);
+    GuidedBounce& noted = task.guided.bounces[id];
+    if (task.context.records && bounce.lobesPdf[k] > 0 && noted.record.lobesPdf == 0)
+      noted = {{0, bounce.lobesPdf[k], bounce.bsdfPdf[k], fraction}, {}, true};
+  });
 }
 
 // As DirectLight::record().

@@ -28,6 +28,10 @@ class ScatterLanes {
   void drawNumbers(const LaneTask& task, const PathArrays& paths, int depth);
   void scatterLanes(const LaneTask& task, const PathArrays& paths, int depth, size_t first,
                     PathArrays& next);
+  // The paths' guideRatio.
+  static Float8 ratiosOf(const LaneTask& task, const PathArrays& paths, size_t first);
+  static void noteGuided(const LaneTask& task, const PathArrays& paths, size_t first,
+                         const GuidedBsdfLanes::Bounce& bounce, Int8 isHere, float fraction);
   void recordSamples(size_t first, unsigned lit, const BsdfLanesValue& value,
                      const Lanes3<Float8>& normal);
   void traceShadowRays(const LaneTask& task);

@@ -15,32 +15,36 @@ using Vector = Lanes3<Float8>;
 
 }  // namespace
 
-void SceneLightLanes::draw(const World& world, const CameraSamples& cameras,
-                           std::span<const int32_t> ids, int depth, const VertexArrays& vertices,
-                           PathContext& context) {
-  samples_.clear(), shadows_.clear(), rays_.clear();
-  if (world.sources.all.empty()) return;
-  for (size_t k = 0; k < ids.size(); ++k) {
+// Light samples need the BSDF's own normal, which differs from the surface's where that would
+// reflect the viewer's direction below the surface.
+void SceneLightLanes::draw(const LaneTask& task, const PathArrays& paths, int depth, size_t i,
+                           const VertexArrays& vertices, const Vector& normal) {
+  samples_.clear();
+  for (size_t k = 0; k < kLanes; ++k) {
     begins_[k] = samples_.size();
-    if (vertices.isHidden[k]) continue;
-    context.sampler.startSample(cameras.numbers(size_t(ids[k])));
-    context.sampler.startVertex(depth);
-    const LightPoint point{vertices.position.at(k), vertices.normal.at(k), nullptr, depth};
-    for (const auto& source : world.sources.all) source->sample(point, context.sampler, samples_);
+    if (i + k >= paths.size || vertices.isHidden[i + k]) continue;
+    PixelSampler& sampler = task.context.sampler;
+    sampler.startSample(task.cameras.numbers(size_t(paths.id[i + k])));
+    sampler.startVertex(depth);
+    const LightPoint point{
+        vertices.position.at(i + k), {normal.x[k], normal.y[k], normal.z[k]}, nullptr, depth};
+    for (const auto& source : task.world().sources.all) source->sample(point, sampler, samples_);
   }
-  for (size_t k = ids.size(); k < begins_.size(); ++k) begins_[k] = samples_.size();
+  begins_[kLanes] = samples_.size();
 }
 
-void SceneLightLanes::scatter(size_t i, const PlainBsdfLanes& bsdf, const Vector& throughput,
-                              Mis mis, const VertexArrays& vertices, std::span<const int32_t> ids) {
+void SceneLightLanes::scatter(const LaneTask& task, const PathArrays& paths, int depth, size_t i,
+                              const VertexArrays& vertices, const GuidedBsdfLanes& bsdf,
+                              const Vector& normal, const Vector& throughput) {
+  draw(task, paths, depth, i, vertices, normal);
   size_t most = 0;
-  for (size_t k = i; k < i + kLanes; ++k) most = std::max(most, begins_[k + 1] - begins_[k]);
+  for (size_t k = 0; k < kLanes; ++k) most = std::max(most, begins_[k + 1] - begins_[k]);
   for (size_t j = 0; j < most; ++j) {  // sample j of each vertex
     LaneArrays3 direction, light;
     alignas(64) LaneArray<float> pdf;
     const auto sampleOf = [&](size_t k) -> const DirectionSample* {
-      const size_t at = begins_[i + k] + j;
-      return at < begins_[i + k + 1] ? &samples_[at] : nullptr;
+      const size_t at = begins_[k] + j;
+      return at < begins_[k + 1] ? &samples_[at] : nullptr;
     };
     for (size_t k = 0; k < kLanes; ++k) {
       const DirectionSample* const sample = sampleOf(k);
@@ -50,7 +54,8 @@ void SceneLightLanes::scatter(size_t i, const PlainBsdfLanes& bsdf, const Vector
       pdf[k] = !sample ? 0 : sample->isDelta ? std::numeric_limits<float>::infinity() : sample->pdf;
     }
     const BsdfLanesValue value = bsdf.evaluate(direction.load(0));
-    const Float8 weight = weightOfLightSample(mis, loadLanes(pdf.data()), value.pdf);
+    const Float8 weight =
+        weightOfLightSample(task.settings().mis, loadLanes(pdf.data()), value.pdf);
     LaneArrays3 radiance;
     radiance.store(0, throughput * (weight * value.fCos) * light.load(0));
     const unsigned lit = bitsOf((loadLanes(pdf.data()) > 0) & ~isBlack(value.fCos));
@@ -60,25 +65,23 @@ void SceneLightLanes::scatter(size_t i, const PlainBsdfLanes& bsdf, const Vector
       if (isSurface && !(sample.distance > vertices.rayOffset[i + k])) return;
       Ray ray = vertices.rayFrom(i + k, sample.wi, sample.distance);
       if (isSurface) ray.endAt(sample.end.position);
-      shadows_.push_back({ids[i + k], uint32_t(i + k), radiance.at(k), sample.end});
+      shadows_.push_back({paths.id[i + k], uint32_t(i + k), radiance.at(k), sample.end});
       rays_.push_back(ray);
     });
   }
 }
 
-void SceneLightLanes::trace(const PathTracer& tracer, std::span<const uint32_t> keys,
-                            PathContext& context, std::span<Rgb> radiances) {
-  const World& world = tracer.world();
-  const RayMask visible = tracer.settings().visible;
-  context.counts.shadow += rays_.size();
+void SceneLightLanes::trace(const LaneTask& task, std::span<const uint32_t> keys) {
+  const RayMask visible = task.settings().visible;
+  task.context.counts.shadow += rays_.size();
   transmittances_.resize(rays_.size());
-  world.accel.transmittance(rays_, transmittances_, visible);
+  task.world().accel.transmittance(rays_, transmittances_, visible);
   for (size_t i = 0; i < shadows_.size(); ++i) {
     const Shadow& shadow = shadows_[i];
     if (isBlack(transmittances_[i])) continue;
-    radiances[size_t(shadow.id)] +=
-        shadow.radiance * tracer.direct().throughEnd(transmittances_[i], rays_[i], {}, visible,
-                                                     keys[shadow.vertex], shadow.end);
+    task.radiances[size_t(shadow.id)] +=
+        shadow.radiance * task.tracer.direct().throughEnd(transmittances_[i], rays_[i], {}, visible,
+                                                          keys[shadow.vertex], shadow.end);
   }
 }
 

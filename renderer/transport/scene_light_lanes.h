@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "transport/camera_samples.h"
+#include "transport/guided_lanes.h"
+#include "transport/path_arrays.h"
 #include "transport/vertex_arrays.h"
 
 namespace chromeball {
@@ -13,23 +14,23 @@ namespace chromeball {
 // samples are weighted in lanes, and the shadow rays form packets. Keeps its memory.
 class SceneLightLanes {
  public:
-  // Draws the samples of the first `count` vertices, of paths `ids` of the cameras at `depth`;
-  // hidden ones have none.
-  void draw(const World& world, const CameraSamples& cameras, std::span<const int32_t> ids,
-            int depth, const VertexArrays& vertices, PathContext& context);
-  bool isEmpty() const { return samples_.empty(); }
+  void clear() { shadows_.clear(), rays_.clear(); }
 
-  // Adds the shadow rays of the vertices [i, i + 8). `throughput`: from the camera to them.
-  void scatter(size_t i, const PlainBsdfLanes& bsdf, const Lanes3<Float8>& throughput, Mis mis,
-               const VertexArrays& vertices, std::span<const int32_t> ids);
+  // Adds the shadow rays of the vertices [i, i + 8) of paths at `depth`, but of hidden ones.
+  // `normal`: of the BSDF. `throughput`: from the camera to the vertices.
+  void scatter(const LaneTask& task, const PathArrays& paths, int depth, size_t i,
+               const VertexArrays& vertices, const GuidedBsdfLanes& bsdf,
+               const Lanes3<Float8>& normal, const Lanes3<Float8>& throughput);
 
   // Adds the light that nothing blocks to the radiances, by id.
-  void trace(const PathTracer& tracer, std::span<const uint32_t> keys, PathContext& context,
-             std::span<Rgb> radiances);
+  void trace(const LaneTask& task, std::span<const uint32_t> keys);
 
  private:
-  std::vector<DirectionSample> samples_;            // of all vertices
-  std::array<size_t, kMostInArrays + 1> begins_{};  // of the samples of each vertex
+  void draw(const LaneTask& task, const PathArrays& paths, int depth, size_t i,
+            const VertexArrays& vertices, const Lanes3<Float8>& normal);
+
+  std::vector<DirectionSample> samples_;                      // of eight vertices
+  std::array<size_t, LanesOf<Float8>::kCount + 1> begins_{};  // of the samples of each
 
   struct Shadow {
     int32_t id;

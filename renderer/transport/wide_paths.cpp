@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "transport/camera_samples.h"
 #include "transport/first_surface.h"
@@ -22,7 +23,7 @@ bool WidePaths::serves(const PathTracer& tracer, const PathContext& context) {
   return world.plain.any() && !world.scene.moves && world.sources.distant.empty() &&
          tracer.mirrorAlpha() == 0 && tracer.lighting().sampleMany({}, {}) && s.maxDepth > 0 &&
          !s.limitsKinds() && s.compared == s.visible && (!s.guide || s.guide->empty()) &&
-         (!s.caustics || s.caustics->empty()) && !context.groups && !context.log;
+         !context.groups && !context.log;
 }
 
 void WidePaths::start(const LaneTask& task) {
@@ -41,13 +42,21 @@ void WidePaths::start(const LaneTask& task) {
   for (LaneArray<float>* const zero : {&paths.pdf, &paths.length, &paths.minAlpha}) zero->fill(0);
   paths.scattered.fill(0);
   std::iota(paths.id.begin(), paths.id.end(), 0);
+  guided_.ratio.fill(1);
+  if (task.settings().caustics) guided_.bounces.fill({});
 }
 
-void WidePaths::follow(const CameraSamples& cameras, const PathTracer& tracer, PathContext& context,
-                       PathBatch& rest, std::span<Rgb> radiances) {
-  const LaneTask task{cameras, tracer, context, radiances};
+void WidePaths::trace(const CameraSamples& cameras, const PathTracer& tracer, PathContext& context,
+                      PathBatch& rest, std::span<Rgb> radiances) {
+  const LaneTask task{cameras, tracer, context, radiances, guided_};
   rest_ = &rest;
   start(task);
+  follow(task);
+  for (size_t id = 0; context.records && id < cameras.size(); ++id)
+    context.addRecord(guided_.bounces[id], radiances[id]);
+}
+
+void WidePaths::follow(const LaneTask& task) {
   for (;;) {
     endEscaped(task);
     if (depth_ == task.settings().maxDepth) return endAtLimit(task);
@@ -61,7 +70,7 @@ void WidePaths::follow(const CameraSamples& cameras, const PathTracer& tracer, P
     scatter_.scatter(task, *paths_, keys_, depth_, *next_);
     ++depth_;
     std::swap(paths_, next_);
-    if (depth_ == task.settings().maxDepth && tracer.surfacesEndPaths())
+    if (depth_ == task.settings().maxDepth && task.tracer.surfacesEndPaths())
       traceLastRays(task);
     else
       traceRays(task);
@@ -166,6 +175,8 @@ void WidePaths::handOver(const LaneTask& task, size_t k) {
   state.scattered = paths_->scattered[k] != 0;
   state.minAlpha = paths_->minAlpha[k];
   state.length = paths_->length[k];
+  state.guideRatio = guided_.ratio[id];
+  state.guided = std::exchange(guided_.bounces[id], {});
   rest_->add(camera, state, paths_->hits.at(k));
   left_.push_back(uint32_t(id));
 }

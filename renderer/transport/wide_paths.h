@@ -27,13 +27,14 @@ class WidePaths {
   // Follows the paths of camera rays, up to kMaxPaths, to their ends, or until PathBatch must go
   // on; `rest` then has the paths left() of them. `radiances`: of the paths so far, in the order of
   // the cameras.
-  void follow(const CameraSamples& cameras, const PathTracer& tracer, PathContext& context,
-              PathBatch& rest, std::span<Rgb> radiances);
+  void trace(const CameraSamples& cameras, const PathTracer& tracer, PathContext& context,
+             PathBatch& rest, std::span<Rgb> radiances);
   // The numbers of the paths in `rest`, in its order.
   std::span<const uint32_t> left() const { return left_; }
 
  private:
   void start(const LaneTask& task);
+  void follow(const LaneTask& task);
   void traceRays(const LaneTask& task);
   void traceLastRays(const LaneTask& task);
   void endEscaped(const LaneTask& task);
@@ -59,6 +60,7 @@ class WidePaths {
   PathArrays escaped_;
   ScatterLanes scatter_;
   LightArrays found_;  // by those that escaped
+  GuidedPaths guided_;
   PathBatch* rest_ = nullptr;
   std::array<Rgb, kMaxPaths> transmittances_;
   std::array<uint32_t, kMaxPaths> keys_;  // as PixelSampler::sampleKey()
