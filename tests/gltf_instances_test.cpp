@@ -61,5 +61,29 @@ TEST(GltfInstances, EqualMorphWeightsShareAMesh) {
   EXPECT_EQ(scene.instances[1].mesh, scene.instances[2].mesh);
 }
 
+// Two nodes place a mesh, which is far from its own origin, at the world's: its coordinates are
+// relative to its middle then, and rounding errors are those of its size (8 cm else).
+TEST(GltfInstances, AMeshFarFromItsOriginIsMovedThere) {
+  GltfWriter w;
+  const float far = 1e4f;
+  const int positions = w.vec3s({far, far, far, far + 2, far, far, far, far + 2, far});
+  w.root["accessors"][size_t(positions)]["min"] = {far, far, far};
+  w.root["accessors"][size_t(positions)]["max"] = {far + 2, far + 2, far};
+  const int mesh = w.mesh({{"attributes", {{"POSITION", positions}}}});
+  w.add("nodes", {{"mesh", mesh}, {"translation", {-far, -far, -far}}});
+  w.add("nodes", {{"mesh", mesh}, {"translation", {far, -far, -far}}, {"scale", {-1, 1, 1}}});
+  const Scene scene = w.load();
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  const Mesh& read = scene.meshes[0];
+  for (const vec3& p : read.positions) EXPECT_LT(glm::length(p), 2);
+  const vec3 corners[3]{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_LT(glm::length(scene.instances[0].point(read.positions[i]) - corners[i]), 1e-6f);
+    const vec3 mirrored = corners[i] * vec3(-1, 1, 1);
+    EXPECT_LT(glm::length(scene.instances[1].point(read.positions[i]) - mirrored), 1e-6f);
+  }
+  EXPECT_LT(glm::length(scene.instances[0].toWorld->reach(read.positions[1])), 5);
+}
+
 }  // namespace
 }  // namespace chromeball::gltf_instances_test

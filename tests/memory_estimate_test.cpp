@@ -77,26 +77,49 @@ TEST_F(SlowMemoryEstimate, OfAProbe) {
   expectRefused(model_, probe, {"--memory", "0.2", "--size", "8x8"}, "takes 0.");
 }
 
-TEST_F(SlowMemoryEstimate, OfGeometry) {
-  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
-  constexpr int kSide = 1000;
+// Adds a node with a wavy sheet of 2 side^2 triangles.
+int addSheet(GltfWriter& w, int side, const nlohmann::json& more) {
   std::vector<float> positions;
   std::vector<uint32_t> indices;
-  for (int y = 0; y <= kSide; ++y)
-    for (int x = 0; x <= kSide; ++x) {
+  for (int y = 0; y <= side; ++y)
+    for (int x = 0; x <= side; ++x) {
       const float height = 20 * std::sin(0.01f * float(x)) * std::cos(0.02f * float(y));
       positions.insert(positions.end(), {float(x), height, float(y)});
-      const uint32_t i = uint32_t(y * (kSide + 1) + x), next = i + kSide + 1;
-      if (x < kSide && y < kSide)
+      const uint32_t i = uint32_t(y * (side + 1) + x), next = i + uint32_t(side) + 1;
+      if (x < side && y < side)
         indices.insert(indices.end(), {i, next, i + 1, i + 1, next, next + 1});
     }
-  GltfWriter w;
   const int count = int(indices.size());
-  addTriangle(w, {{"attributes", {{"POSITION", w.vec3s(positions)}}},
-                  {"indices", w.accessor(w.view(indices), kUInt, "SCALAR", size_t(count))}});
+  nlohmann::json primitive = {
+      {"attributes", {{"POSITION", w.vec3s(positions)}}},
+      {"indices", w.accessor(w.view(indices), kUInt, "SCALAR", size_t(count))}};
+  primitive.update(more);
+  return addTriangle(w, primitive);
+}
+
+TEST_F(SlowMemoryEstimate, OfGeometry) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
+  GltfWriter w;
+  addSheet(w, 1000, nlohmann::json::object());
   const std::string model = w.save();
   expectStated(model, probe_, {"--size", "8x8"});
   expectRefused(model, probe_, {"--memory", "0.2", "--size", "8x8"}, "geometry");
+}
+
+// Each placed triangle is a lamp of its own, and a bake has the vertices of each instance.
+TEST_F(SlowMemoryEstimate, OfInstancesThatEmit) {
+  if (kIsInstrumented) GTEST_SKIP() << kMeasuresMemory;
+  GltfWriter w;
+  w.add("materials", {{"emissiveFactor", {1, 1, 1}}});
+  const int node = addSheet(w, 200, {{"material", 0}});
+  for (int i = 1; i < 40; ++i)
+    w.add("nodes",
+          {{"mesh", w.root["nodes"][size_t(node)]["mesh"]}, {"translation", {0, 30 * i, 0}}});
+  const std::string model = w.save();
+  expectStated(model, probe_, {"--size", "8x8"});
+  expectRefused(model, probe_, {"--memory", "0.2", "--size", "8x8"}, "geometry");
+  expectError({"bake", model, "--to", "vertices", "--memory", "0.5", "-o", out_ / "a.glb"},
+              "40 instances with 3200000 triangles apart take");
 }
 
 TEST_F(SlowMemoryEstimate, TexturesAreRefusedByTheirHeaders) {

@@ -237,6 +237,29 @@ TEST(MotionKeys, AMorphWithANormalMapKeepsItsVertices) {
   EXPECT_EQ(motion->keys.back().point(3), vec3(1, 0, 0));
 }
 
+// A mirrored node whose mesh another node has too, until that one changes its shape: from then on
+// it is stored in world space, where its triangles are wound the other way.
+TEST(MotionKeys, AMirroredNodeMovesThoughItsMeshIsNoLongerShared) {
+  for (const float sideways : {1.0f, -1.0f}) {
+    Animated w;
+    const int morphing =
+        addTriangle(w, {{"targets", {{{"POSITION", w.vec3s({0, 0, 1, 0, 0, 1, 0, 0, 1})}}}}},
+                    {{"weights", {0}}});
+    const int moving = w.add("nodes", {{"mesh", 0}, {"scale", {sideways, 1, 1}}, {"weights", {0}}});
+    w.animate(morphing, "weights", "SCALAR", {0, 1});
+    w.animate(moving, "translation", "VEC3", {0, 0, 0, 3, 0, 0});
+    const LoadedScene scene = loaded(w.save(), openShutterFor(1, 2));
+    EXPECT_FALSE(says(scene, "appears, vanishes")) << sideways;
+    const Instance& instance = scene.scene.instances.at(1);
+    ASSERT_TRUE(instance.motion) << sideways;
+    const InstanceMotion& motion = *instance.motion;
+    for (uint32_t v = 0; v < 3; ++v) {
+      const vec3 way = motion.keys.back().point(v) - motion.keys.front().point(v);
+      EXPECT_NEAR(glm::length(way - vec3(3, 0, 0)), 0, 1e-6f) << sideways;
+    }
+  }
+}
+
 // Everything vanishes: the frame shows the probe.
 TEST(SlowMotionKeys, AFrameMayBeEmpty) {
   Animated w;

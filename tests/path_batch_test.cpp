@@ -64,7 +64,8 @@ void expectSame(const NamedScene& named, const Camera& camera, const LightSource
     for (int x = 0; x < b.width; ++x)
       differing += maxComponent(absolute(a.rgb(x, y) - b.rgb(x, y))) >
                    1e-5f * amplification * (1e-3f + maxComponent(b.rgb(x, y)));
-  EXPECT_LE(differing, b.width * b.height / 500);
+  // Among guided bounces the last bits of a pdf may turn a choice of the roulette, too.
+  EXPECT_LE(differing, b.width * b.height / (caustics ? 200 : 500));
 }
 
 void expectSame(const NamedScene& named, const Camera& camera, const std::string& strategy,

@@ -35,6 +35,8 @@ TEST(Suggest, NoNameIsNearIfMostLettersDiffer) {
   EXPECT_EQ(nearestName("probe", {}), "");
   EXPECT_EQ(nearestName("wattage", {"size", "seed"}), "");
   EXPECT_EQ(nearestName(std::string(4 << 20, 's'), {"samples", "seed", "size"}), "");
+  const std::string endless(1 << 20, 's'), other = endless + "t";  // would take an hour
+  EXPECT_EQ(nearestName(endless, {other}), "");
 }
 
 TEST(Suggest, SameNamesDifferInDashesAndCapitalsAlone) {

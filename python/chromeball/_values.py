@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import array
 import operator
 import os
 from typing import Any
@@ -38,6 +39,8 @@ def copied(value: Any) -> Any:
         import numpy as np
 
         return np.array(value)
+    if isinstance(value, (array.array, bytearray, memoryview)):
+        return memoryview(value).tolist()
     return value
 
 

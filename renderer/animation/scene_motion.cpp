@@ -12,6 +12,17 @@
 namespace chromeball {
 namespace {
 
+// Whether two parts have the same triangles with the same fronts. A mesh that a mirroring transform
+// places has them wound the other way if it is stored in world space.
+bool areSame(const Scene& sceneA, const Instance& a, const Scene& sceneB, const Instance& b) {
+  const Mesh &meshA = sceneA.meshes[size_t(a.mesh)], &meshB = sceneB.meshes[size_t(b.mesh)];
+  if (meshA.positions.size() != meshB.positions.size()) return false;
+  if (a.mirrors() == b.mirrors()) return meshA.triangles == meshB.triangles;
+  return std::ranges::equal(
+      meshA.triangles, meshB.triangles,
+      [](const Triangle& s, const Triangle& t) { return s == Triangle(t.x, t.z, t.y); });
+}
+
 // For each instance of `scene`, the same part in `other`; null if the node has other parts there,
 // or ones that are turned inside out.
 std::vector<const Instance*> partsIn(const Scene& other, const Scene& scene) {
@@ -22,13 +33,9 @@ std::vector<const Instance*> partsIn(const Scene& other, const Scene& scene) {
   for (const auto& [node, parts] : own) {
     const std::vector<const Instance*>& there = others[node];
     if (there.size() != parts.size()) continue;
-    for (size_t i = 0; i < parts.size(); ++i) {
-      const Mesh &a = scene.meshes[size_t(parts[i]->mesh)],
-                 &b = other.meshes[size_t(there[i]->mesh)];
-      if (a.positions.size() == b.positions.size() && a.triangles == b.triangles &&
-          parts[i]->mirrors() == there[i]->mirrors())
+    for (size_t i = 0; i < parts.size(); ++i)
+      if (areSame(scene, *parts[i], other, *there[i]))
         found[size_t(parts[i] - scene.instances.data())] = there[i];
-    }
   }
   return found;
 }

@@ -136,9 +136,15 @@ int editDistance(std::string_view a, std::string_view b) {
 }
 
 std::string_view nearestName(std::string_view name, const std::vector<std::string_view>& known) {
+  constexpr size_t kLongest = 200;      // of names that people mistype
+  constexpr size_t kLetters = 1 << 20;  // of all candidates, that are compared
   std::string_view nearest;
+  if (name.size() > kLongest) return nearest;
   int nearestDistance = 0;
+  size_t letters = 0;
   for (std::string_view candidate : known) {
+    if (candidate.size() > kLongest) continue;
+    if ((letters += candidate.size()) > kLetters) break;
     const auto [shorter, longer] = std::minmax({name.size(), candidate.size()});
     if ((longer - shorter) * 2 > longer) continue;  // the distance is at least the difference
     const int distance = editDistance(lowerCase(name), lowerCase(candidate));

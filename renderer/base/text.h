@@ -31,7 +31,8 @@ std::string lowerCase(std::string_view text);  // ASCII letters
 int editDistance(std::string_view a, std::string_view b);
 
 // The known name with the smallest edit distance from `name`, the first of several; empty if that
-// distance is more than half the length of the longer name.
+// distance is more than half the length of the longer name. Names longer than people type are not
+// compared, nor more than a million letters.
 std::string_view nearestName(std::string_view name, const std::vector<std::string_view>& known);
 
 // The known name that differs from `name` in no more than dashes, underscores and capitals; empty

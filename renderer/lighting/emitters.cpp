@@ -84,6 +84,11 @@ std::unique_ptr<Emitters> Emitters::make(const Scene& scene) {
   for (const Material& material : scene.materials) emissions.emplace_back(scene, material);
 
   Found found;
+  size_t most = 0;
+  for (const Instance& instance : scene.instances)
+    if (!emissions[size_t(instance.material)].isBlackEverywhere())
+      most += scene.meshes[size_t(instance.mesh)].triangles.size();
+  found.triangles.reserve(most), found.powers.reserve(most);
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];

@@ -22,6 +22,9 @@ namespace chromeball {
 // probability that a BSDF-sampled ray hits it.
 class Emitters : public LightSource {
  public:
+  // What one takes while they are made: its corners, power, and place in the distribution.
+  static constexpr size_t kBytesPerTriangle = 68;
+
   // Null if nothing emits. The scene must outlive this.
   static std::unique_ptr<Emitters> make(const Scene& scene);
 

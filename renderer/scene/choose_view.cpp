@@ -25,13 +25,10 @@ struct Areas {
 
 Areas areasOf(const Scene& scene, const std::vector<int>& instances) {
   Areas areas;
-  for (const int i : instances) {
-    const Instance& instance = scene.instances[size_t(i)];
-    forTriangles(scene, instance, 0, triangleCount(scene, instance), [&](const Corners& c) {
-      const dvec3 area = glm::cross(c[1] - c[0], c[2] - c[0]);
-      areas.vector += area, areas.sum += glm::length(area);
-    });
-  }
+  forShownTriangles(scene, instances, [&](const Corners& c, int) {
+    const dvec3 area = glm::cross(c[1] - c[0], c[2] - c[0]);
+    areas.vector += area, areas.sum += glm::length(area);
+  });
   return areas;
 }
 

@@ -77,12 +77,10 @@ class EyeView {
 std::vector<Sight> sightsFrom(const Scene& scene, const std::vector<int>& instances,
                               const dvec3& eye) {
   EyeView panorama(eye);
-  for (const int i : instances) {
-    const Instance& instance = scene.instances[size_t(i)];
-    const bool isDoubleSided = scene.materials[size_t(instance.material)].doubleSided;
-    forTriangles(scene, instance, 0, triangleCount(scene, instance),
-                 [&](const Corners& c) { panorama.add(c, isDoubleSided, i); });
-  }
+  forShownTriangles(scene, instances, [&](const Corners& c, int i) {
+    const int material = scene.instances[size_t(i)].material;
+    panorama.add(c, scene.materials[size_t(material)].doubleSided, i);
+  });
   return panorama.take();
 }
 
@@ -91,23 +89,25 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-void addInstance(const Scene& scene, const Instance& instance, const OutsideViews& empty,
-                 OutsideViews& views) {
+void addInstance(const Scene& scene, const Instance& instance, const ShownTriangles& shown,
+                 const OutsideViews& empty, OutsideViews& views) {
   constexpr size_t kGrain = 1 << 18;
   const bool isDoubleSided = scene.materials[size_t(instance.material)].doubleSided;
   const auto addTriangles = [&](size_t begin, size_t end, OutsideViews& to) {
-    forTriangles(scene, instance, begin, end, [&](const Corners& c) {
-      for (AxisView& view : to) view.add(c, isDoubleSided);
-    });
+    forTriangles(
+        scene, instance, begin, end,
+        [&](const Corners& c) {
+          for (AxisView& view : to) view.add(c, isDoubleSided);
+        },
+        shown.step);
   };
   const auto join = [](OutsideViews& to, const OutsideViews& later) {
     for (size_t i = 0; i < to.size(); ++i) to[i].add(later[i]);
   };
-  const size_t count = triangleCount(scene, instance);
-  if (count <= kGrain)
-    addTriangles(0, count, views);
+  if (shown.count <= kGrain)
+    addTriangles(0, shown.count, views);
   else
-    join(views, joinRanges(count, kGrain, empty, addTriangles, join));
+    join(views, joinRanges(shown.count, kGrain, empty, addTriangles, join));
 }
 
 }  // namespace
@@ -173,7 +173,11 @@ OutsideViews outsideViews(const Scene& scene, const std::vector<int>& instances,
                           const Bounds& box) {
   const OutsideViews empty{AxisView(0, box), AxisView(1, box), AxisView(2, box)};
   OutsideViews views = empty;
-  for (const int i : instances) addInstance(scene, scene.instances[size_t(i)], empty, views);
+  for (const int i : instances) {
+    endIfCancelled();
+    const Instance& instance = scene.instances[size_t(i)];
+    addInstance(scene, instance, {scene, instance, instances.size()}, empty, views);
+  }
   return views;
 }
 

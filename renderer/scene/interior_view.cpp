@@ -20,11 +20,7 @@ class Section {
   Section(const Scene& scene, const std::vector<int>& instances, const Bounds& box, double height)
       : cell_(std::max(box.size().x, box.size().z) / kSide),
         corner_(middle(box) - 0.5 * kSide * cell_) {
-    for (const int i : instances) {
-      const Instance& instance = scene.instances[size_t(i)];
-      forTriangles(scene, instance, 0, triangleCount(scene, instance),
-                   [&](const Corners& c) { add(c, height); });
-    }
+    forShownTriangles(scene, instances, [&](const Corners& c, int) { add(c, height); });
   }
 
   dvec2 point(int x, int z) const { return corner_ + cell_ * dvec2(x + 0.5, z + 0.5); }

@@ -9,6 +9,7 @@
 #include "composite/render_composite.h"
 #include "denoise/denoise.h"
 #include "image/io/texel_file.h"
+#include "lighting/emitters.h"
 
 namespace chromeball {
 namespace {
@@ -27,6 +28,17 @@ double triangleCountOfMeshes(const Scene& scene) {
       count += double(scene.meshes[size_t(instance.mesh)].triangles.size()) *
                double(instance.motion->keys.size() - 1);
   return count;
+}
+
+// Of emissive triangles as lights (lighting/emitters.h), at their places.
+double emitterBytes(const Scene& scene) {
+  double count = 0;
+  for (const Instance& instance : scene.instances) {
+    const Material& material = scene.materials[size_t(instance.material)];
+    if (material.emits() && !material.unlit)
+      count += double(scene.meshes[size_t(instance.mesh)].triangles.size());
+  }
+  return double(Emitters::kBytesPerTriangle) * count;
 }
 
 double bytesOfFiles(const Scene& scene) {
@@ -107,7 +119,8 @@ MemoryEstimate estimateMemory(const LoadedScene& loaded) {
   if (const auto& file = scene.texelFile)
     e.textures += double(std::min(file->byteCount(), file->cacheBytes()));
   const bool keepsFiles = description.run.isOfFrames && scene.isAnimated;
-  e.geometry = geometryBytes(scene) + (keepsFiles ? bytesOfFiles(scene) : 0);
+  const double emitters = emitterBytes(scene);
+  e.geometry = geometryBytes(scene) + emitters + (keepsFiles ? bytesOfFiles(scene) : 0);
   e.probe = map + kTableTexel * mapTexels;
 
   const double always = e.process + e.textures + meshes;

@@ -124,7 +124,7 @@ class Bake {
       : options_(options),
         loaded_(loadScene(plannedRender(options, distance_))),
         settings_(bakeSettings(options, loaded_.description, distance_)),
-        meshes_(placedMeshes(loaded_.scene)) {
+        meshes_(placedWithinMemory(loaded_)) {
     checkDistinct({options.output, options.toVertices() ? "" : options.lightmapPath()},
                   loaded_.files);
   }

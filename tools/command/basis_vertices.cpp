@@ -41,7 +41,7 @@ class BasisVertices {
   }
 
   void run() {
-    const std::vector<PlacedMesh> meshes = placedMeshes(loaded_.scene);
+    const std::vector<PlacedMesh> meshes = placedWithinMemory(loaded_);
     const std::vector<BakePoint> points = vertexPoints(meshes);
     if (points.empty())
       throwInput("{}: has no triangle with an area; there is no transfer", options_.scene);

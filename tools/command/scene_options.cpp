@@ -266,4 +266,19 @@ void checkMemoryWithScene(const LoadedScene& loaded, double bytes, const std::st
                      Remedy{"memory", {}});
 }
 
+std::vector<PlacedMesh> placedWithinMemory(const LoadedScene& loaded) {
+  // The placed mesh, its points and their results, and the file's arrays; measured.
+  constexpr double kBytesPerTriangle = 72, kBytesPerVertex = 260;
+  double triangles = 0, vertices = 0;
+  for (const Instance& instance : loaded.scene.instances) {
+    const Mesh& mesh = loaded.scene.meshes[size_t(instance.mesh)];
+    triangles += double(mesh.triangles.size()), vertices += double(mesh.positions.size());
+  }
+  checkMemoryWithScene(
+      loaded, kBytesPerTriangle * triangles + kBytesPerVertex * vertices,
+      fmt::format("{}: {} instances with {} triangles apart take", loaded.description.path,
+                  loaded.scene.instances.size(), triangles));
+  return placedMeshes(loaded.scene);
+}
+
 }  // namespace chromeball

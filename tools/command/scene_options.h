@@ -3,6 +3,7 @@
 // that each takes from a scene file.
 #pragma once
 
+#include "bake/placed_mesh.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "command.h"
@@ -50,5 +51,9 @@ void dropLight(SceneFile& scene, Settings& options);
 
 // Throws InputError unless these bytes fit into the memory beside the scene; `what` takes them.
 void checkMemoryWithScene(const LoadedScene& loaded, double bytes, const std::string& what);
+
+// placedMeshes(), for results at the vertices or texels of each instance, after a check of the
+// memory that they take.
+std::vector<PlacedMesh> placedWithinMemory(const LoadedScene& loaded);
 
 }  // namespace chromeball

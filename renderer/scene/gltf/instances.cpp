@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <map>
@@ -60,6 +61,25 @@ std::vector<dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& 
     if (!scales.empty()) m = glm::scale(m, glm::dvec3(scales[i]));
   }
   return transforms;
+}
+
+// The middle of the vertices of an accessor, if they are far from the origin as measured by their
+// extent; else 0. A mesh of several instances is moved there, so that the rounding errors of its
+// places in the world are those of its size. The bounds that a file states need not be right: any
+// origin will do.
+glm::dvec3 farMiddleOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+  constexpr double kFar = 16;
+  const auto found = primitive.attributes.find("POSITION");
+  if (found == primitive.attributes.end() || found->second < 0 ||
+      size_t(found->second) >= model.accessors.size())
+    return glm::dvec3(0);
+  const tinygltf::Accessor& accessor = model.accessors[size_t(found->second)];
+  if (accessor.minValues.size() != 3 || accessor.maxValues.size() != 3) return glm::dvec3(0);
+  const glm::dvec3 low = glm::make_vec3(accessor.minValues.data()),
+                   high = glm::make_vec3(accessor.maxValues.data()), middle = 0.5 * (low + high);
+  const double distance = glm::length(middle);
+  return std::isfinite(distance) && distance > kFar * glm::length(high - low) ? middle
+                                                                              : glm::dvec3(0);
 }
 
 class InstanceReader {
@@ -128,13 +148,23 @@ class InstanceReader {
     // Rays are not transformed back through a flattened or tiny instance: it has a mesh of its own.
     const bool shared =
         plan.geometry && plan.geometry->users > 1 && canPlaceInstance(glm::dmat3(plan.toWorld));
-    int mesh = shared ? plan.geometry->mesh : -1;
-    if (mesh == -1) mesh = readMesh(plan, shared || !plan.geometry ? nullptr : &plan.toWorld);
-    if (mesh == -1) return;
-    if (shared) plan.geometry->mesh = mesh;
-    builder_.addInstance(mesh, plan.material, plan.node,
-                         shared ? std::optional(roundToFloat(plan.toWorld)) : std::nullopt,
-                         moves(plan));
+    if (!shared) {
+      const int mesh = readMesh(plan, plan.geometry ? &plan.toWorld : nullptr);
+      if (mesh != -1) builder_.addInstance(mesh, plan.material, plan.node, {}, moves(plan));
+      return;
+    }
+    const glm::dvec3 origin = farMiddleOf(file_.model, primitiveOf(plan));
+    if (plan.geometry->mesh == -1) {
+      const dmat4 toOrigin = glm::translate(dmat4(1), -origin);
+      plan.geometry->mesh = readMesh(plan, origin == glm::dvec3(0) ? nullptr : &toOrigin);
+    }
+    if (plan.geometry->mesh == -1) return;
+    builder_.addInstance(plan.geometry->mesh, plan.material, plan.node,
+                         roundToFloat(glm::translate(plan.toWorld, origin)), moves(plan));
+  }
+
+  const tinygltf::Primitive& primitiveOf(const Plan& plan) const {
+    return file_.model.meshes[size_t(plan.mesh)].primitives[size_t(plan.primitive)];
   }
 
   bool moves(const Plan& plan) {
@@ -150,8 +180,7 @@ class InstanceReader {
   // Adds a mesh, of an earlier load if there is one, to the scene, transformed by `transform`
   // unless that is null. Returns its index, or -1 if it has no triangles.
   int readMesh(const Plan& plan, const dmat4* transform) {
-    const auto& primitive =
-        file_.model.meshes[size_t(plan.mesh)].primitives[size_t(plan.primitive)];
+    const tinygltf::Primitive& primitive = primitiveOf(plan);
     MeshKey key;
     if (cache_) {
       key = keyOf(plan, primitive, transform);
