@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What add_mesh() and Probe() accept and refuse."""
 
+import array
 import os
 import pathlib
 
@@ -56,6 +57,18 @@ def test_arrays_of_lamps_cameras_and_materials_are_copied():
     assert np.allclose(red._keywords["base_color"], [1 / 3, 2 / 3, 1])
     assert np.array_equal(cb.Material(base_color=[0.5, 0.25, 0.125]).eval(up, up), before)
     assert np.array_equal(other.eval(up, up), before)
+
+
+@pytest.mark.parametrize("kind", [lambda x: array.array("d", x), lambda x: memoryview(array.array("d", x)), np.array])
+def test_arrays_of_the_standard_library_are_copied(kind):
+    values = [0.25, 0.5, 0.75]
+    place, color = kind(values), kind(values)
+    scene = cb.Scene()
+    scene.add_light("point", position=place, intensity=1)
+    material = cb.Material(base_color=color)
+    place[1] = color[1] = 0.0
+    assert list(scene._keys["light"][0]["position"]) == values
+    assert list(material._keywords["base_color"]) == values
 
 
 def test_instances_of_what_is_no_mesh_are_refused():
