@@ -229,18 +229,36 @@ TEST(View, OpenBoxesAreSeenThroughTheirOpenSide) {
 }
 
 // A yard with walls of two faces, three times as large as the furnished room beside it.
-TEST(View, RoomsUnderARoofAreSeenRatherThanYards) {
+Scene houseWithYard(bool hasWindow) {
   Scene house = empty();
   addBox(house, {-5, -0.2f, -4}, {5, 0, 11});
   addBox(house, {-5, 0, -4.2f}, {5, 3, -4});
   addBox(house, {-5, 0, 11}, {5, 3, 11.2f});
   addBox(house, {-5.2f, 0, -4}, {-5, 3, 11});
   addBox(house, {5, 0, -4}, {5.2f, 3, 11});
-  addBox(house, {-5, 0, 0}, {5, 3, 0.2f});
+  if (hasWindow) {
+    addBox(house, {-5, 0, 0}, {-3, 3, 0.2f});
+    addBox(house, {3, 0, 0}, {5, 3, 0.2f});
+    addBox(house, {-3, 0, 0}, {3, 0.5f, 0.2f});
+    addBox(house, {-3, 2.5f, 0}, {3, 3, 0.2f});
+  } else {
+    addBox(house, {-5, 0, 0}, {5, 3, 0.2f});
+  }
   addBox(house, {-5, 3, -4}, {5, 3.2f, 0.2f});
   for (int i = 0; i < 3; ++i) addBox(house, {3 - 3 * i, 0, -3.8f}, {4 - 3 * i, 1, -3});
-  const vec3 eye = framingCamera(house, kAspect).position;
+  return house;
+}
+
+TEST(View, RoomsUnderARoofAreSeenRatherThanYards) {
+  const vec3 eye = framingCamera(houseWithYard(false), kAspect).position;
   EXPECT_TRUE(eye.z < 0 && eye.z > -4) << eye.z;
+}
+
+// Along the room, where a window on its long side shows more.
+TEST(View, RoomsAreSeenRatherThanTheirWindows) {
+  const Camera camera = framingCamera(houseWithYard(true), kAspect);
+  EXPECT_TRUE(camera.position.z < 0 && camera.position.z > -4) << camera.position.z;
+  EXPECT_GT(std::fabs(camera.back.x), 0.8f);
 }
 
 // The eye is above the floor that it stands on, not above the cellar.

@@ -17,13 +17,21 @@ class Section {
  public:
   static constexpr int kSide = 256;  // cells per side; walls are thicker than one cell
 
-  Section(const Scene& scene, const std::vector<int>& instances, const Bounds& box, double height)
+  // `above`: the view of the scene from above and below.
+  Section(const Scene& scene, const std::vector<int>& instances, const Bounds& box, double height,
+          const AxisView& above)
       : cell_(std::max(box.size().x, box.size().z) / kSide),
         corner_(middle(box) - 0.5 * kSide * cell_) {
     forShownTriangles(scene, instances, [&](const Corners& c, int) { add(c, height); });
+    for (int z = 0; z < kSide; ++z)
+      for (int x = 0; x < kSide; ++x) {
+        const dvec2 at = point(x, z);
+        hasRoof_.push_back(!above.shows({at.x, height, at.y}, true));
+      }
   }
 
   dvec2 point(int x, int z) const { return corner_ + cell_ * dvec2(x + 0.5, z + 0.5); }
+  bool hasRoof(int x, int z) const { return hasRoof_[size_t(z * kSide + x)]; }
 
   // Whether no surface is near: within 8 of 256 cells, 3% of the room's length.
   bool isFree(int x, int z) const {
@@ -35,16 +43,20 @@ class Section {
   }
 
   // Metres to the first surface in this direction; nullopt if there is none or if its back is seen.
+  // Under a roof only those under it count: what a window shows is no part of the room.
   std::optional<double> sightDistance(int x, int z, const dvec2& direction) const {
     constexpr double kStep = 0.7;
+    double counted = INFINITY;
     for (double t = kStep;; t += kStep) {
       const int cx = int(std::floor(x + 0.5 + t * direction.x));
       const int cz = int(std::floor(z + 0.5 + t * direction.y));
       if (!inside(cx, cz)) return std::nullopt;
+      if (hasRoof(x, z) && !hasRoof(cx, cz)) counted = std::min(counted, t);
       const uint16_t fronts = at(cx, cz);
       if (fronts == 0) continue;
       for (int i = 0; i < kNormals; ++i)
-        if ((fronts >> i & 1) && glm::dot(normal(i), direction) < 0) return t * cell_;
+        if ((fronts >> i & 1) && glm::dot(normal(i), direction) < 0)
+          return std::min(t, counted) * cell_;
       return std::nullopt;
     }
   }
@@ -87,6 +99,7 @@ class Section {
   double cell_;
   dvec2 corner_;
   std::vector<uint16_t> fronts_ = std::vector<uint16_t>(size_t(kSide) * kSide);
+  std::vector<bool> hasRoof_;
 };
 
 constexpr int kDirections = 32;
@@ -246,7 +259,7 @@ std::optional<InteriorView> interiorView(const Scene& scene, const std::vector<i
   if (!isFurnished && !isHollow) return std::nullopt;
 
   const double height = glm::mix(double(box.min.y), double(box.max.y), kEyeHeight);
-  const Section section(scene, instances, box, height);
+  const Section section(scene, instances, box, height, outside[1]);
   const double footprint = double(box.size().x) * double(box.size().z);
   double maxArea = 0;
   bool isCovered = false;  // the best position
@@ -261,7 +274,7 @@ std::optional<InteriorView> interiorView(const Scene& scene, const std::vector<i
       }
       if (!isEnclosed(seen) || areaAround(seen) < kLeastRoom * footprint) continue;
       const dvec2 at = section.point(x, z);
-      const bool hasRoof = !outside[1].shows({at.x, height, at.y}, true);
+      const bool hasRoof = section.hasRoof(x, z);
       if (isCovered && !hasRoof) continue;
       for (int i = 0; i < kDirections; ++i) {
         const double area = viewArea(seen, i);

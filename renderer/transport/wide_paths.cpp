@@ -43,7 +43,7 @@ void WidePaths::start(const LaneTask& task) {
   paths.scattered.fill(0);
   std::iota(paths.id.begin(), paths.id.end(), 0);
   guided_.ratio.fill(1);
-  if (task.settings().caustics) guided_.bounces.fill({});
+  if (task.context.records) std::fill_n(guided_.bounces.begin(), paths.size, GuidedBounce{});
 }
 
 void WidePaths::trace(const CameraSamples& cameras, const PathTracer& tracer, PathContext& context,
