@@ -87,6 +87,36 @@ TEST(Convolve, AgreesWithTheDirectSum) {
     }
 }
 
+// All light from one texel: the kernel itself, by any rectangle that holds it. Never below 0.
+TEST(Convolve, OfOneTexelIsTheKernel) {
+  constexpr ImageSize kSize{512, 256};
+  constexpr int kX = 90, kY = 70, kParts = 8;
+  Image map(kSize.width, kSize.height, 3);
+  map.setRgb(kX, kY, Rgb(1e4f));
+  const double flux = 1e4 * texelSolidAngle(kY, kSize.width, kSize.height);
+  const std::vector<vec3> axes = texelDirections({24, 12});
+  for (const ZonalKernel& kernel :
+       {ZonalKernel::ggx(0.2), ZonalKernel::ggx(0.5), ZonalKernel::ggx(0.95),
+        ZonalKernel::phong(1.5), ZonalKernel::phong(50)}) {
+    const std::vector<dvec3> means = convolve(map, kernel, axes);
+    double worst = 0;
+    for (size_t i = 0; i < axes.size(); ++i) {
+      double value = 0, weight = 0;
+      const ImageSize fine{kSize.width * kParts, kSize.height * kParts};
+      for (int k = 0; k < kParts * kParts; ++k) {
+        const int x = kX * kParts + k % kParts, y = kY * kParts + k / kParts;
+        const double w = texelSolidAngle(y, fine.width, fine.height);
+        value += w * kernel.at(glm::dot(dvec3(axes[i]), dvec3(texelDirection(fine, x, y)))).value;
+        weight += w;
+      }
+      const double exact = value / weight * flux / kernel.integral(), mean = flux / (4 * kPiD);
+      worst = std::max(worst, std::fabs(means[i].x - exact) / (exact + mean));
+      EXPECT_GE(means[i].x, 0);
+    }
+    EXPECT_LT(worst, 2e-3);
+  }
+}
+
 TEST(Convolve, ByACosineIsIrradianceOverPi) {
   const Image map = studioProbe({256, 128});
   const std::vector<vec3> axes = texelDirections({24, 12});

@@ -31,6 +31,10 @@ bool samplesAreas(const D& d) {
   return strategy == "suns" || (strategy != "bsdf" && !hasLights(strategy));
 }
 
+bool isLitFromEverywhere(const D& d, const SceneContents& c) {
+  return (c.hasProbe && d.lighting.from != LightFrom::Suns) || c.hasAmbientLight;
+}
+
 bool hasOcclusionLayer(const D& d) {
   return d.settings.wantsAov(Aov::AmbientOcclusion) || d.settings.wantsAov(Aov::BentNormal);
 }
@@ -116,15 +120,15 @@ constexpr std::array kDependences = {
                }},
     Dependence{"render.ao", "light from everywhere",
                [](const D& d, const SceneContents& c) {
-                 return !d.settings.occlusion.ambient || c.hasProbe || c.hasAmbientLight;
+                 return !d.settings.occlusion.ambient || isLitFromEverywhere(d, c);
                }},
     Dependence{"render.ao_distance", "light from everywhere",
                [](const D& d, const SceneContents& c) {
-                 return c.hasProbe || c.hasAmbientLight || hasOcclusionLayer(d);
+                 return isLitFromEverywhere(d, c) || hasOcclusionLayer(d);
                }},
     Dependence{"render.reflection_occlusion", "light from everywhere",
                [](const D& d, const SceneContents& c) {
-                 return !d.settings.occlusion.reflection || c.hasProbe || c.hasAmbientLight;
+                 return !d.settings.occlusion.reflection || isLitFromEverywhere(d, c);
                }},
     Dependence{"render.irradiance_cache", "paths of more bounces",
                [](const D& d, const SceneContents&) {

@@ -71,9 +71,11 @@ constexpr Synonyms kPlaces[] = {
     {"materials are those of the model (glTF)", " material materials shader shaders bsdf texture "},
     {"models are [[model]] in a scene file", " object objects mesh meshes geometry shape shapes "},
     {"a lens is `aperture` and `focus` in [camera]",
-     " fstop f-stop f-number dof depth-of-field focus focus-distance bokeh blades "},
+     " aperture fstop f-stop f-number dof depth-of-field focus focus-distance bokeh blades "},
     {"a camera is [camera] in a scene file: `position` and `look_at`; --view has angles",
      " target lookat origin camera-position "},
+    {"--view has names, too: --view front",
+     " front back left right above below top bottom side iso isometric "},
     {"renders run on the processor", " gpu device cuda metal backend gpus "},
     {"lamps are [[light]] in a scene file, or those of the model; an environment is a probe: "
      "--probe, [probe]",

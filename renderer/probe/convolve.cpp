@@ -71,13 +71,16 @@ struct Lobe {
   const ZonalKernel& kernel;
   double error;
   double mean;           // over the sphere
-  double horizonRadius;  // of rectangles at the horizon
+  double slope;          // to which it jumps from 0 at the horizon
+  double horizonRadius;  // of rectangles there, if the light is everywhere
 
-  // There the slope jumps from 0 to `slope`. Over a strip 2 r wide the error is up to pi / 2 slope
-  // r^2, of an integral of 4 pi mean.
+  // Over a strip 2 r wide the error is up to pi / 2 slope r^2, of an integral of 4 pi mean; it is
+  // slope r for the light of a point.
   Lobe(const ZonalKernel& k, double allowed)
-      : kernel(k), error(allowed), mean(k.integral() / (4 * kPiD)) {
-    const double slope = k.at(std::numeric_limits<double>::min()).slope;
+      : kernel(k),
+        error(allowed),
+        mean(k.integral() / (4 * kPiD)),
+        slope(k.at(std::numeric_limits<double>::min()).slope) {
     horizonRadius = std::sqrt(8 * error * mean / slope);  // infinite without a jump
   }
 };
@@ -90,7 +93,8 @@ class KernelSum {
     visit(map.root());
   }
 
-  dvec3 mean() const { return radiance_ / weight_; }
+  // Where the kernel ends, its tangents may give a little less than nothing.
+  dvec3 mean() const { return glm::max(radiance_ / weight_, dvec3(0)); }
 
  private:
   // Whether no part of the rectangle is above the horizon, where the kernel is 0.
@@ -101,31 +105,35 @@ class KernelSum {
   // Whether a kernel that is smooth at the horizon rises there by more than the error: x^n at a
   // height x, over the strip of rectangles at the horizon, 4 pi r, has a mean of r^n / (2 (n + 1)),
   // and its tangent at the centre may be 0.
-  bool risesFast(double cosine, double r) const {
+  bool risesFast(double cosine, double r, double concentration) const {
     const double highest = lobe_.kernel.at(std::min(cosine + r, 1.0)).value;
-    return highest * r > 4 * lobe_.error * lobe_.mean;
+    return highest * r * concentration > 4 * lobe_.error * lobe_.mean;
   }
 
   // The kernel at the centre, where it is linear in the cosine over the rectangle: to the error
-  // times the geometric mean of its value and its peak, which is 1, or times its mean over the
-  // sphere.
-  std::optional<ZonalKernel::Value> linearOver(const RectangleGeometry& g) const {
+  // times the sum of its value and its mean over the sphere, for its light and for constant light.
+  std::optional<ZonalKernel::Value> linearOver(const RectangleGeometry& g,
+                                               const LightSpread& light) const {
     const double cosine = glm::dot(axis_, g.centre), r = g.radius;
-    if (cosine - r < 0 && (r > lobe_.horizonRadius || risesFast(cosine, r))) return {};
+    if (cosine - r < 0 && (r * std::sqrt(light.concentration) > lobe_.horizonRadius ||
+                           r * light.share * lobe_.slope > lobe_.error * lobe_.mean ||
+                           risesFast(cosine, r, light.concentration)))
+      return {};
     const double distance = std::max(glm::distance(axis_, g.centre) - r, 0.0);
     if (r > (lobe_.kernel.width() + distance) / 4) return {};
     const ZonalKernel::Value k = lobe_.kernel.at(cosine);
-    // The mean of the second-order term over a disc of this radius.
-    const double sine2 = std::max(1 - cosine * cosine, 0.0);
-    if (k.curvature * sine2 * r * r / 8 > lobe_.error * std::max(std::sqrt(k.value), lobe_.mean))
-      return {};
+    // The second-order term, by the mean square along the kernel's slope: of all light at worst,
+    // and of constant light, a disc's.
+    const double sine2 = std::max(1 - cosine * cosine, 0.0), even = r * r / 4;
+    const double squared = std::max(std::min(light.squared, light.concentration * even), even);
+    if (k.curvature * sine2 * squared / 2 > lobe_.error * (k.value + lobe_.mean)) return {};
     return k;
   }
 
   void visit(const MapMoments::Node& node) {
     const RectangleGeometry g = map_.geometry(node);
     if (isBelow(g)) return;
-    if (const auto k = linearOver(g))
+    if (const auto k = linearOver(g, map_.spread(node, g)))
       add(*k, g, map_.moments(node, g));
     else if (node.level > 0)
       map_.forChildren(node, [this](const MapMoments::Node& child) { visit(child); });
@@ -137,7 +145,7 @@ class KernelSum {
     for (int i = 0; i < 4; ++i) {
       const RectangleGeometry g(r.quarter(i));
       if (isBelow(g)) continue;
-      if (const auto k = linearOver(g))
+      if (const auto k = linearOver(g, map_.spread(radiance, g)))
         add(*k, g, {radiance, g});
       else
         divide(r.quarter(i), radiance);

@@ -43,6 +43,16 @@ RadianceMoments::RadianceMoments(const dvec3& radiance, const RectangleGeometry&
         (geometry.directionLength - geometry.solidAngle) * geometry.centre[axis] * radiance;
 }
 
+namespace {
+
+double sumOf(const dvec3& c) { return c.x + c.y + c.z; }
+double sumOf(const Rgb& c) { return sumOf(dvec3(c)); }
+
+// Of a rectangle of constant radiance, about.
+double evenSpread(const RectangleGeometry& g) { return g.radius * g.radius / 3; }
+
+}  // namespace
+
 MapMoments::MapMoments(const Image& latLong) : map_(&latLong) {
   for (int level = 1; columnsOf(level - 1) > 1 || rowsOf(level - 1) > 1; ++level) {
     const int columns = columnsOf(level);
@@ -53,6 +63,7 @@ MapMoments::MapMoments(const Image& latLong) : map_(&latLong) {
     });
     stored_.push_back(std::move(nodes));
   }
+  flux_ = sumOf(moments(root(), geometry(root())).flux);
 }
 
 MapRectangle MapMoments::rectangle(const Node& node) const {
@@ -78,18 +89,40 @@ RadianceMoments MapMoments::moments(const Node& node, const RectangleGeometry& g
   return moments;
 }
 
+LightSpread MapMoments::spread(const dvec3& radiance, const RectangleGeometry& geometry) const {
+  const double flux = sumOf(radiance) * geometry.solidAngle;
+  return {evenSpread(geometry), 1, flux > 0 ? flux / flux_ : 0};
+}
+
+LightSpread MapMoments::spread(const Node& node, const RectangleGeometry& geometry) const {
+  if (node.level == 0) return spread(radiance(node), geometry);
+  const Stored& s = stored(node);
+  const double flux = sumOf(s.flux);
+  if (!(flux > 0)) return {evenSpread(geometry), 1, 0};
+  return {double(s.squaredSpread), double(s.peak) * geometry.solidAngle / flux, flux / flux_};
+}
+
 MapMoments::Stored MapMoments::sumOfChildren(const Node& node) const {
   Stored sum{RectangleGeometry(rectangle(node))};
   RadianceMoments total;
+  double squares = 0;  // flux times squared chords
   forChildren(node, [&](const Node& child) {
     const RectangleGeometry g = geometry(child);
     const RadianceMoments m = moments(child, g);
     const dvec3 shift = g.centre - sum.geometry.centre;
     total.flux += m.flux;
-    for (int axis = 0; axis < 3; ++axis)
+    const double own = child.level > 0 ? double(stored(child).squaredSpread) : evenSpread(g);
+    squares += (own + glm::dot(shift, shift)) * sumOf(m.flux);
+    for (int axis = 0; axis < 3; ++axis) {
       total.offset[axis] += m.offset[axis] + shift[axis] * m.flux;
+      squares += 2 * shift[axis] * sumOf(m.offset[axis]);
+    }
+    sum.peak =
+        std::max(sum.peak, child.level > 0 ? stored(child).peak : float(sumOf(radiance(child))));
   });
   sum.flux = total.flux;
+  const double flux = sumOf(total.flux);
+  sum.squaredSpread = float(flux > 0 ? std::max(squares / flux, 0.0) : evenSpread(sum.geometry));
   for (int axis = 0; axis < 3; ++axis) sum.offset[axis] = total.offset[axis];
   return sum;
 }

@@ -35,8 +35,16 @@ struct RadianceMoments {
   RadianceMoments(const dvec3& radiance, const RectangleGeometry& geometry);  // constant
 };
 
+// How far the light of a rectangle is from its centre, how unevenly it fills it, and how much of
+// the map's it is; channels are summed.
+struct LightSpread {
+  double squared;        // the mean squared chord from the centre, weighted by radiance
+  double concentration;  // the largest radiance relative to the mean; 1: constant
+  double share;          // of the map's flux
+};
+
 // Level 0 is the texels, for which nothing is stored; a node of level k is 2^k texels wide and
-// high, less at the map's edges. Takes a third of 96 bytes a texel.
+// high, less at the map's edges. Takes a third of 104 bytes a texel.
 class MapMoments {
  public:
   explicit MapMoments(const Image& latLong);  // `latLong` must outlive this
@@ -49,6 +57,9 @@ class MapMoments {
   RectangleGeometry geometry(const Node& node) const;
   RadianceMoments moments(const Node& node, const RectangleGeometry& geometry) const;
   dvec3 radiance(const Node& texel) const;  // of a node of level 0
+  LightSpread spread(const Node& node, const RectangleGeometry& geometry) const;
+  // Of a part of a texel.
+  LightSpread spread(const dvec3& radiance, const RectangleGeometry& geometry) const;
 
   // Calls `visit` with each child of a node above level 0.
   template <class Visit>
@@ -61,7 +72,8 @@ class MapMoments {
  private:
   struct Stored {
     RectangleGeometry geometry;
-    Rgb flux, offset[3];  // as RadianceMoments
+    Rgb flux, offset[3];        // as RadianceMoments
+    float squaredSpread, peak;  // LightSpread::squared; the largest radiance, summed over channels
   };
   int levels() const { return int(stored_.size()) + 1; }
   int columnsOf(int level) const { return ((map_->width - 1) >> level) + 1; }
@@ -73,6 +85,7 @@ class MapMoments {
 
   const Image* map_;
   std::vector<std::vector<Stored>> stored_;  // of the levels from 1 on
+  double flux_ = 0;                          // of the map, over all channels
 };
 
 }  // namespace chromeball
