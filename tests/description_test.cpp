@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A description rendered with the library, without the command.
 #include "base/json.h"
-#include "base/json_text.h"
 #include "front/plan_render.h"
 #include "session/render_loaded.h"
 

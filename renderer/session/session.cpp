@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "base/file_stamps.h"
 #include "base/json.h"
-#include "base/json_text.h"
 #include "base/progress.h"
 #include "description/differences.h"
 #include "render/live_result.h"

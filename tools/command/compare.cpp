@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "display_options.h"
 #include "front/plan_render.h"

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "base/json.h"
-#include "base/json_text.h"
 #include "image/tonemap.h"
 #include "probe/convert.h"
 #include "probe/mapping.h"
