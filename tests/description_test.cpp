@@ -13,7 +13,6 @@
 
 #include "base/error.h"
 #include "description/describe.h"
-#include "description/differences.h"
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"

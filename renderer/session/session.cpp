@@ -11,7 +11,7 @@
 #include "base/file_stamps.h"
 #include "base/json.h"
 #include "base/progress.h"
-#include "description/differences.h"
+#include "description/describe.h"
 #include "render/live_result.h"
 #include "render/render_state.h"
 #include "scene/gltf/model_cache.h"

@@ -20,7 +20,6 @@
 #include "session/render_loaded.h"
 #include "session/render_report.h"
 #include "study/report/report.h"
-#include "study/report/report_images.h"
 #include "study/result_tables.h"
 #include "study/study.h"
 #include "study/study_run.h"

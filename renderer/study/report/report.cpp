@@ -11,7 +11,6 @@
 #include "probe/convert.h"
 #include "probe/mapping.h"
 #include "study/report/log_log_plot.h"
-#include "study/report/report_images.h"
 #include "study/result_tables.h"
 
 namespace chromeball {
