@@ -19,8 +19,7 @@
 #include "image/io/pfm.h"
 #include "image/io/png_color.h"
 #include "image/io/radiance_hdr.h"
-#include "image/io/tiff_block.h"
-#include "image/io/tiff_picture.h"
+#include "image/io/tiff.h"
 #include "image/size_limits.h"
 #include "image/tonemap.h"
 
