@@ -10,7 +10,6 @@
 
 #include "base/parallel.h"
 #include "lighting/fit/light_descent.h"
-#include "lighting/fit/radiance_points.h"
 #include "math/dense_solvers.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/constellation_lights.h"
+#include "lighting/methods.h"
 
 #include <limits>
 

@@ -12,7 +12,6 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "description/describe.h"
-#include "render/live_result.h"
 #include "render/render_state.h"
 #include "scene/gltf/model_cache.h"
 #include "session/live_image.h"
