@@ -2,7 +2,7 @@
 // Scenes and charts for the tests of baking.
 #pragma once
 
-#include "bake/charts.h"
+#include "bake/atlas.h"
 #include "small_scenes.h"
 
 namespace chromeball {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "front/develop_text.h"
+#include "front/arguments.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "run_command.h"

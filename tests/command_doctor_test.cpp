@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "base/json.h"
-#include "base/json_text.h"
 #include "base/memory.h"
 #include "instrumented.h"
 #include "json_file.h"

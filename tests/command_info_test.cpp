@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "base/json.h"
-#include "base/json_text.h"
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
 #include "json_file.h"

@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "base/json.h"
-#include "base/json_text.h"
 #include "image/io/read_image.h"
 #include "image/io/write_image.h"
 #include "json_file.h"

@@ -9,7 +9,7 @@
 #include <optional>
 #include <thread>
 
-#include "base/json_text.h"
+#include "base/json.h"
 #include "image/io/read_image.h"
 #include "json_file.h"
 #include "preview_render.h"

@@ -13,7 +13,6 @@
 #include "json_file.h"
 #include "probe/synth.h"
 #include "run_command.h"
-#include "scene/gltf/custom_data.h"
 #include "scene/gltf/load_gltf.h"
 #include "small_model.h"
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "constellation_maps.h"
-#include "lighting/constellation/kollig_keller.h"
 #include "lighting/constellation/median_cut.h"
+#include "lighting/constellation/spherical_kmeans.h"
 #include "probe/irradiance.h"
 #include "probe/mapping.h"
 #include "probe/synth.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A description rendered with the library, without the command.
 #include "base/json.h"
-#include "base/json_text.h"
 #include "front/plan_render.h"
 #include "session/render_loaded.h"
 
@@ -14,7 +13,6 @@
 
 #include "base/error.h"
 #include "description/describe.h"
-#include "description/differences.h"
 #include "gltf_writer.h"
 #include "image/io/write_image.h"
 #include "probe/synth.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // FLIP compared with an independent brute-force implementation of the formulas of the paper, by
 // two-dimensional convolution and without shared code.
-#include "measure/flip.h"
+#include "measure/image_error.h"
 
 #include <gtest/gtest.h>
 

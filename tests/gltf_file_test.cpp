@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "base/json_text.h"
+#include "base/json.h"
 #include "gltf_writer.h"
 #include "json_file.h"
 #include "scene/gltf/load_gltf.h"

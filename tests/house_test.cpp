@@ -100,7 +100,7 @@ const std::map<std::string, std::vector<std::string>> kIncludedBy = {
     {"toml++/", {"renderer/front/toml_section.h"}},
     {"nlohmann/json.hpp", {"renderer/base/json.h"}},
     {"base/json.h",
-     {"renderer/base/json_", "renderer/bake/gltf_document.h", "renderer/description/",
+     {"renderer/base/json.cpp", "renderer/bake/gltf_document.h", "renderer/description/",
       "renderer/front/", "renderer/session/", "renderer/lighting/export/light_",
       "renderer/scene/gltf/", "renderer/scene/solve/", "renderer/study/", "tools/", "tests/"}},
     {"Eigen/",

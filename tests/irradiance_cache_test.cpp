@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "approximate/cached_integrator.h"
-#include "approximate/gather_irradiance.h"
 #include "base/archive.h"
 #include "base/error.h"
 #include "base/parallel.h"

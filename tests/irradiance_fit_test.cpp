@@ -10,8 +10,7 @@
 
 #include "base/parallel.h"
 #include "lighting/fit/light_descent.h"
-#include "lighting/fit/nonnegative.h"
-#include "lighting/fit/radiance_points.h"
+#include "math/dense_solvers.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/load.h"

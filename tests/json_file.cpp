@@ -2,7 +2,6 @@
 #include "json_file.h"
 
 #include "base/json.h"
-#include "base/json_text.h"
 #include "run_command.h"
 
 namespace chromeball {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles of glass with which nothing coincides.
-#include "trace/lone_triangles.h"
+#include "trace/coincidence.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 // if it is too much. Small scenes: the numbers of large ones are in docs/measured/results.md.
 #include "session/memory_estimate.h"
 #include "base/json.h"
-#include "base/json_text.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scene/solve/observations.h"
-#include "scene/solve/solved_camera.h"
+#include "scene/solve/solve_camera.h"
 
 namespace chromeball {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Response curves: solved from exposures, written and read.
-#include "probe/capture/response_curve.h"
+#include "probe/capture/exposure.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "bracket.h"
 #include "image/tonemap.h"
-#include "probe/capture/exposure.h"
 #include "probe/capture/merge_photographs.h"
 #include "run_command.h"
 

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "probe/synth.h"
-#include "render/live_result.h"
 #include "render/render_state.h"
 #include "scene/builder/scene_builder.h"
 #include "session/live_image.h"

@@ -12,7 +12,6 @@
 #include "base/error.h"
 #include "front/plan_render.h"
 #include "front/scene_values.h"
-#include "front/settings_page.h"
 #include "front/synonyms.h"
 #include "render/render.h"
 #include "run_command.h"

@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "photographs_of_points.h"
 #include "run_command.h"
-#include "scene/solve/solved_camera.h"
 
 namespace chromeball::solve_lines_test {
 namespace {

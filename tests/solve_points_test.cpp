@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "math/rotation.h"
 #include "photographs_of_points.h"
-#include "scene/solve/solved_camera.h"
 
 namespace chromeball::solve_points_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "icc_file.h"
 #include "image/image.h"
 #include "image/io/read_image.h"
-#include "image/io/tiff_block.h"
+#include "image/io/tiff.h"
 #include "run_command.h"
 #include "tiff_file.h"
 

@@ -20,7 +20,6 @@
 #include "measure/statistics.h"
 #include "plan.h"
 #include "study.h"
-#include "study/found_light.h"
 #include "study/result_tables.h"
 #include "study/results.h"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "approximate/gather_irradiance.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "approximate/gather_irradiance.h"
+#include "approximate/cached_integrator.h"
 
 #include <algorithm>
 #include <atomic>

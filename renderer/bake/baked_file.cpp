@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "bake/gltf_materials.h"
+#include "bake/gltf_document.h"
 #include "bake/vertex_light.h"
 
 namespace chromeball {

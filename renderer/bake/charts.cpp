@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/charts.h"
+#include "bake/atlas.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/json_text.h"
 
 namespace chromeball {
 namespace {

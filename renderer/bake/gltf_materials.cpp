@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/gltf_materials.h"
+#include "bake/gltf_document.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A description as text: for the headers of images and the identity of stored renders.
+// A description as text: for the headers of images and the identity of stored renders, and to tell
+// what two descriptions differ in.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,5 +32,24 @@ std::vector<std::string> layerNames(const RenderDescription& description);
 // A hash of everything that rays and cameras see: geometry, materials, texels, lights, cameras.
 // Takes one pass over the arrays.
 uint64_t hashOf(const Scene& scene);
+
+// The parts of a render that must be made again when its description changes.
+
+// Data in memory count as different if they are another object: hashes of a large scene would take
+// as long as a frame.
+class Differences {
+ public:
+  Differences(const RenderDescription& a, const RenderDescription& b);
+
+  // Whether nothing of the models and of the rest of the scene differs. A name that is in none of
+  // the lists of differences.cpp loads everything again.
+  bool keepScene() const;
+  static bool keepsScene(const std::string& name);
+  bool inProbe() const;
+  bool inLighting() const;  // the way of sampling the light
+
+ private:
+  std::set<std::string> names_;  // of describe()
+};
 
 }  // namespace chromeball

@@ -7,7 +7,6 @@
 
 #include "base/hash.h"
 #include "base/json.h"
-#include "base/json_text.h"
 
 namespace chromeball {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "description/differences.h"
+#include "description/describe.h"
 
 #include <algorithm>
 #include <array>
 
 #include "base/json.h"
-#include "description/describe.h"
 
 namespace chromeball {
 namespace {

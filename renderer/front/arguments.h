@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/text.h"
+#include "image/develop/develop.h"
 #include "math/rotation.h"
 #include "probe/mapping.h"
 #include "scene/gltf/load_gltf.h"
@@ -37,5 +38,19 @@ Rgb parseColor(std::string_view text, std::string_view location);
 Rotation parseRotation(const std::vector<double>& numbers, std::string_view location);
 // The same from numbers with commas between.
 Rotation parseRotation(std::string_view text, std::string_view location);
+
+// The steps of developing (image/develop/develop.h), as options of `chromeball image develop` and
+// as the setting `develop` of a render.
+
+// Sets one of
+//   clip=X, depth-blur=FOCUS:APERTURE, motion=LENGTH@ANGLE, bloom=WEIGHT:SIGMA,...,
+//   glare=spencer, vignette=STRENGTH.
+// Precondition: `name` is one of these. The weights of a bloom must sum to 1 within 1%, and are
+// made to sum to 1. Throws InputError, begun by `location`.
+void setDevelop(DevelopSettings& settings, std::string_view name, std::string_view text,
+                std::string_view location);
+
+// Sets all of "bloom=.75:1,.25:32 vignette=.4". Throws InputError, begun by `location`.
+DevelopSettings parseDevelop(std::string_view text, std::string_view location);
 
 }  // namespace chromeball

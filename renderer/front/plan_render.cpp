@@ -8,7 +8,6 @@
 #include "composite/layers.h"
 #include "description/capabilities.h"
 #include "front/arguments.h"
-#include "front/develop_text.h"
 #include "front/settings.h"
 
 namespace chromeball {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "description/origins.h"
 #include "description/scene_entries.h"
 #include "front/settings.h"
 

@@ -5,7 +5,7 @@
 #include "front/scene_file.h"
 #include "front/toml_section.h"
 #include "scene/light.h"
-#include "scene/solve/solved_camera.h"
+#include "scene/solve/solve_camera.h"
 
 #include <string>
 #include <vector>

@@ -123,4 +123,13 @@ class Settings {
 // Whether [composite] has no plate.
 bool isShadowCatcher(const Settings& settings);
 
+// The reference page of the scene file.
+
+// docs/scene-file.md, from the table of settings: every key with its type, range, unit, default,
+// option and meaning.
+std::string settingsPage();
+
+// The default in words: "256", "the model's first camera", "off".
+std::string defaultText(const Setting& setting);
+
 }  // namespace chromeball

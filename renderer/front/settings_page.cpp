@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "front/settings_page.h"
+#include "front/settings.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "description/capabilities.h"
-#include "front/settings.h"
 #include "lighting/methods.h"
 
 namespace chromeball {

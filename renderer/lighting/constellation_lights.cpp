@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/constellation_lights.h"
+#include "lighting/methods.h"
 
 #include <limits>
 
 #include "lighting/constellation/cube_grid.h"
-#include "lighting/constellation/kollig_keller.h"
 #include "lighting/constellation/median_cut.h"
 #include "lighting/constellation/penrose.h"
+#include "lighting/constellation/spherical_kmeans.h"
 
 namespace chromeball {
 namespace {

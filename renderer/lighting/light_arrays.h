@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light samples, or the light that rays find, in arrays (math/lane_arrays.h).
+// Light samples, or the light that rays find, in arrays (math/lanes.h).
 #pragma once
 
-#include "math/lane_arrays.h"
+#include "math/lanes.h"
 
 namespace chromeball {
 

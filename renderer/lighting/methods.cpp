@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "lighting/area_lights.h"
-#include "lighting/constellation_lights.h"
 #include "lighting/delta_lights.h"
 #include "lighting/fit/irradiance_fit.h"
 #include "lighting/importance.h"

@@ -3,7 +3,7 @@
 // Keller 2003, with the radiance of the direction instead of the region's mean).
 #pragma once
 
-#include "lighting/constellation/kollig_keller.h"
+#include "lighting/constellation/spherical_kmeans.h"
 #include "lighting/luminance_field.h"
 #include "lighting/probe_light.h"
 #include "math/cdf.h"

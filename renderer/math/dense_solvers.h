@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decompositions of dense matrices of doubles by Eigen, which take seconds to compile: each is
-// compiled once, in a file of its own (dense_*.cpp).
+// Dense matrices of doubles by Eigen, and least squares of all kinds. Decompositions take seconds
+// to compile: each is compiled once, here.
 #pragma once
 
 #include <Eigen/Core>
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace chromeball {
@@ -57,5 +58,61 @@ class LeastSquares {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;  // lower triangle
   Eigen::VectorXd right_;
 };
+
+// Non-negative least squares.
+
+// The x >= 0 that minimises x . A x / 2 - b . x, where A (n x n) is symmetric and positive
+// (semi)definite: the normal equations of a least-squares problem. The active-set method of Lawson
+// and Hanson (1974), started from `start` >= 0; the fewer of its zeros differ from the solution's,
+// the fewer steps it takes.
+std::vector<double> solveNonnegative(std::span<const double> A, std::span<const double> b,
+                                     std::span<const double> start);
+
+// Nonlinear least squares by the Levenberg-Marquardt method (Marquardt 1963).
+
+template <class State>
+struct Minimum {
+  State state;
+  double squares = 0;      // the sum of the squared residuals
+  Eigen::MatrixXd normal;  // J^T J there
+};
+
+// Descends from `start`, which must be in the problem's domain. A problem has a type State, and
+//   bool residuals(const State&, Eigen::VectorXd&, Eigen::MatrixXd* jacobian) const
+//                                              false outside of its domain; jacobian may be null
+//   State moved(const State&, const Eigen::VectorXd& step) const
+// The Jacobian is the derivative of residuals(moved(state, step)) at the step 0. Stops after
+// `maxSteps`, or when a step changes nothing.
+template <class Problem>
+Minimum<typename Problem::State> minimise(const Problem& problem, typename Problem::State start,
+                                          int maxSteps) {
+  constexpr double kFirst = 1e-3, kLess = 0.1, kMore = 10, kMost = 1e12, kStill = 1e-14;
+  Minimum<typename Problem::State> best{std::move(start), 0, {}};
+  Eigen::VectorXd residual, other;
+  Eigen::MatrixXd jacobian;
+  problem.residuals(best.state, residual, &jacobian);
+  best.squares = residual.squaredNorm();
+  double damping = kFirst;
+  for (int step = 0; step < maxSteps && damping < kMost; ++step) {
+    best.normal = normalMatrix(jacobian);
+    Eigen::MatrixXd damped = best.normal;
+    damped.diagonal() *= 1 + damping;
+    const Eigen::VectorXd move = solveSymmetric(damped, -jacobian.transpose() * residual);
+    typename Problem::State moved = problem.moved(best.state, move);
+    if (!move.allFinite() || !problem.residuals(moved, other, nullptr) ||
+        !(other.squaredNorm() <= best.squares)) {
+      damping *= kMore;
+      continue;
+    }
+    const double gain = best.squares - other.squaredNorm();
+    best.state = std::move(moved);
+    problem.residuals(best.state, residual, &jacobian);
+    best.squares = residual.squaredNorm();
+    damping *= kLess;
+    if (gain <= kStill * best.squares) break;
+  }
+  best.normal = normalMatrix(jacobian);
+  return best;
+}
 
 }  // namespace chromeball

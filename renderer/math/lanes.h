@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight numbers at once, for functions that take a float or lanes of them (LanesOf, math/vec.h).
-// Not for public headers: programs that use the library may be compiled for any processor.
+// Eight numbers at once, for functions that take a float or lanes of them (LanesOf, math/vec.h),
+// and arrays of numbers for them. Not for public headers: programs that use the library may be
+// compiled for any processor.
 #pragma once
 
 #include <immintrin.h>
@@ -112,6 +113,35 @@ class LanePacking {
 
   unsigned bits_;
   uint64_t order_;
+};
+
+// Rays, and other things, in arrays: one for each of their numbers, for code that works in lanes.
+
+// The arrays have room for one vector more than is used, since lanes are stored in whole vectors.
+inline constexpr size_t kMostInArrays = 64, kArraySize = kMostInArrays + 8;
+template <class T>
+using LaneArray = std::array<T, kArraySize>;
+
+// Vectors, or colours.
+struct LaneArrays3 {
+  alignas(64) LaneArray<float> x, y, z;
+
+  Lanes3<Float8> load(size_t i) const {
+    return {loadLanes(&x[i]), loadLanes(&y[i]), loadLanes(&z[i])};
+  }
+  void store(size_t i, const Lanes3<Float8>& v) {
+    storeLanes(&x[i], v.x), storeLanes(&y[i], v.y), storeLanes(&z[i], v.z);
+  }
+  void store(size_t i, const Lanes3<Float8>& v, const LanePacking& packing) {
+    packing.store(&x[i], v.x), packing.store(&y[i], v.y), packing.store(&z[i], v.z);
+  }
+  vec3 at(size_t i) const { return {x[i], y[i], z[i]}; }
+  void set(size_t i, const vec3& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+};
+
+// Rays without an end; the directions are unit.
+struct RayArrays {
+  LaneArrays3 origin, direction;
 };
 
 }  // namespace chromeball

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measure/flip.h"
+#include "measure/image_error.h"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,6 @@
 #include "base/progress.h"
 #include "film/rows.h"
 #include "render/guide_training.h"
-#include "render/live_result.h"
 #include "render/pixel_renderer.h"
 #include "render/render_state.h"
 

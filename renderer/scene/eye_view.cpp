@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/eye_view.h"
+#include "scene/choose_view.h"
 
 #include <algorithm>
 

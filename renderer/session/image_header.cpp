@@ -12,7 +12,6 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
-#include "base/json_text.h"
 #include "base/parallel.h"
 #include "description/describe.h"
 

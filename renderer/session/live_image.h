@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/live_result.h"
+#include "render/render_state.h"
 #include "session/finish.h"
 #include "session/session.h"
 

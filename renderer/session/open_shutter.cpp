@@ -9,7 +9,7 @@
 #include "scene/gltf/load_gltf.h"
 #include "scene/gltf/model_cache.h"
 #include "session/memory_estimate.h"
-#include "session/stand_models.h"
+#include "session/place_models.h"
 
 namespace chromeball {
 namespace {

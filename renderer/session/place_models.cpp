@@ -16,7 +16,6 @@
 #include "session/memory_estimate.h"
 #include "session/open_shutter.h"
 #include "session/scene_lighting.h"
-#include "session/stand_models.h"
 
 namespace chromeball {
 namespace {

@@ -2,10 +2,17 @@
 #include "session/render_loaded.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
 
+#include "approximate/irradiance_cache.h"
+#include "base/archive.h"
 #include "base/error.h"
+#include "base/file.h"
+#include "base/hash.h"
 #include "base/progress.h"
-#include "session/cache_file.h"
+#include "session/image_header.h"
 #include "session/memory_estimate.h"
 #include "session/run_composite.h"
 #include "session/scene_lighting.h"
@@ -13,6 +20,75 @@
 
 namespace chromeball {
 namespace {
+
+// The irradiance cache of a render, and the file that keeps it for later ones (--cache).
+
+// The file: magic, checksum of the rest, identity, records. In the byte order of the machine.
+constexpr std::array<char, 16> kCacheMagic{'c', 'h', 'r', 'o', 'm', 'e', 'b', 'a',
+                                           'l', 'l', ' ', 'c', 'a', 'c', 'h', 'e'};
+constexpr size_t kCacheHeader = kCacheMagic.size() + sizeof(uint64_t);
+
+class CacheFile {
+ public:
+  // The cache of a description with RenderSettings::cacheError. Reads its file if it exists. Throws
+  // InputError if the file is damaged or belongs to another scene or light, and wherever
+  // checkReplaceable() does.
+  explicit CacheFile(const LoadedScene& loaded);
+
+  IrradianceCache& cache() { return cache_; }
+
+  // Replaces the file, if the description has one and there are new records. Throws RunError.
+  void write();
+
+ private:
+  void read();
+
+  IrradianceCache cache_;
+  std::optional<std::string> path_;
+  std::string identity_;  // of scene and light
+  size_t inFile_ = 0;     // records
+};
+
+CacheFile::CacheFile(const LoadedScene& loaded)
+    : cache_(loaded.description.settings.cacheError.value()), path_(loaded.description.run.cache) {
+  if (!path_) return;
+  checkReplaceable(*path_);
+  identity_ = lightIdentity(loaded);
+  if (std::filesystem::exists(*path_)) read();
+}
+
+void CacheFile::read() {
+  const std::vector<uint8_t> bytes = readFile(*path_);
+  const std::span contents(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (contents.size() < kCacheHeader ||
+      !std::equal(kCacheMagic.begin(), kCacheMagic.end(), contents.begin()))
+    throwInput("{}: is not an irradiance cache", *path_);
+  const std::span<const char> rest = contents.subspan(kCacheHeader);
+  uint64_t stored = 0;
+  std::memcpy(&stored, contents.data() + kCacheMagic.size(), sizeof(stored));
+  if (stored != checksum(rest)) throwInput("{}: damaged: its checksum differs", *path_);
+  MemoryReader reader(rest, *path_);
+  std::string identity;
+  reader(identity);
+  if (identity != identity_)
+    throwInput("{}: is the cache of another scene: {}", *path_, differenceOf(identity, identity_));
+  cache_.archive(reader);
+  inFile_ = cache_.size();
+}
+
+void CacheFile::write() {
+  if (!path_ || cache_.size() == inFile_) return;
+  MemoryWriter writer;
+  writer(identity_);
+  cache_.archive(writer);
+  const uint64_t sum = checksum(writer.contents);
+  std::vector<uint8_t> bytes(kCacheHeader + writer.contents.size());
+  std::copy(kCacheMagic.begin(), kCacheMagic.end(), bytes.begin());
+  std::memcpy(bytes.data() + kCacheMagic.size(), &sum, sizeof(sum));
+  std::copy(writer.contents.begin(), writer.contents.end(), bytes.begin() + kCacheHeader);
+  writeFile(*path_, bytes);
+  inFile_ = cache_.size();
+}
 
 FinishedRender renderPlain(const LoadedScene& loaded, const PreparedScene& prepared,
                            const RenderSettings& settings, const Progress& progress,

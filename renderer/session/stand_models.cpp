@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "session/stand_models.h"
+#include "session/place_models.h"
 
 #include "composite/local_scene.h"
 #include "math/vec.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/found_light.h"
+#include "study/results.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The closest hits of rays in arrays (math/lane_arrays.h).
+// The closest hits of rays in arrays (math/lanes.h).
 #pragma once
 
 #include <optional>
 
-#include "math/lane_arrays.h"
+#include "math/lanes.h"
 #include "trace/ray.h"
 
 namespace chromeball {

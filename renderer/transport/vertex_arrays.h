@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "math/lane_arrays.h"
+#include "math/lanes.h"
 #include "shading/bsdf_lanes.h"
 #include "trace/hit_arrays.h"
 #include "transport/plain_surfaces.h"

@@ -11,8 +11,7 @@
 #include "scene/scene.h"
 #include "shading/bsdf_tables.h"
 #include "trace/accel.h"
-#include "trace/lone_triangles.h"
-#include "trace/shared_places.h"
+#include "trace/coincidence.h"
 #include "transport/plain_surfaces.h"
 
 namespace chromeball {

@@ -5,7 +5,7 @@
 #include "front/scene_file_sections.h"
 #include "fuzz.h"
 #include "scene/solve/observations.h"
-#include "scene/solve/solved_camera.h"
+#include "scene/solve/solve_camera.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace chromeball;

@@ -4,9 +4,9 @@
 #include <benchmark/benchmark.h>
 
 #include "lighting/constellation/cube_grid.h"
-#include "lighting/constellation/kollig_keller.h"
 #include "lighting/constellation/median_cut.h"
 #include "lighting/constellation/penrose.h"
+#include "lighting/constellation/spherical_kmeans.h"
 #include "scene.h"
 
 namespace chromeball {

@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "lighting/fit/irradiance_fit.h"
-#include "lighting/fit/radiance_points.h"
+#include "lighting/fit/light_descent.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "scene.h"

@@ -43,10 +43,10 @@ set(chromeball_private_libraries
   $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
 # Each takes as long as a group, for what it instantiates of a library.
 set_source_files_properties(
-  renderer/base/json_text.cpp renderer/math/dense_solvers.cpp
+  renderer/base/json.cpp renderer/math/dense_solvers.cpp
   renderer/relight/transfer/clustered_pca.cpp renderer/lighting/export/light_file.cpp
-  renderer/lighting/fit/light_descent.cpp renderer/lighting/fit/nonnegative.cpp
-  renderer/scene/gltf/draco.cpp renderer/scene/gltf/gltf_file.cpp renderer/bake/gltf_document.cpp
+  renderer/lighting/fit/light_descent.cpp renderer/scene/gltf/draco.cpp
+  renderer/scene/gltf/gltf_file.cpp renderer/bake/gltf_document.cpp
   PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 foreach(target chromeball_planning chromeball_renderer)
   chromeball_compile(${target})

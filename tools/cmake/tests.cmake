@@ -6,7 +6,7 @@ add_executable(tests ${test_sources})
 chromeball_internal_target(tests)
 target_include_directories(tests PRIVATE tests)
 target_link_libraries(tests PRIVATE demo nlohmann_json::nlohmann_json OpenEXR::OpenEXR PNG::PNG
-                      JPEG::JPEG Boost::headers GTest::gtest GTest::gtest_main)
+                      JPEG::JPEG Boost::headers Eigen3::Eigen GTest::gtest GTest::gtest_main)
 chromeball_optimize_less(tests)
 chromeball_link_library_first(tests)
 chromeball_unity(tests 56)  # each file of tests has a namespace of its name

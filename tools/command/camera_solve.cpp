@@ -22,7 +22,6 @@
 #include "scene/gltf/load_gltf.h"
 #include "scene/solve/observations.h"
 #include "scene/solve/solve_camera.h"
-#include "scene/solve/solved_camera.h"
 
 namespace chromeball {
 namespace {

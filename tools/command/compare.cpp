@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/json_text.h"
 #include "commands.h"
 #include "display_options.h"
 #include "front/plan_render.h"
@@ -21,7 +20,6 @@
 #include "session/render_loaded.h"
 #include "session/render_report.h"
 #include "study/report/report.h"
-#include "study/report/report_images.h"
 #include "study/result_tables.h"
 #include "study/study.h"
 #include "study/study_run.h"

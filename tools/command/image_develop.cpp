@@ -9,7 +9,6 @@
 #include "commands.h"
 #include "display_options.h"
 #include "front/arguments.h"
-#include "front/develop_text.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
 #include "image_files.h"

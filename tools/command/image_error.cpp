@@ -12,7 +12,6 @@
 #include "image_files.h"
 #include "json_values.h"
 #include "measure/false_color.h"
-#include "measure/flip.h"
 #include "measure/image_error.h"
 #include "messages.h"
 

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/json_text.h"
 #include "base/text.h"
 #include "image/io/output_file.h"
 #include "messages.h"

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "base/json.h"
-#include "base/json_text.h"
 
 namespace chromeball {
 

@@ -7,7 +7,6 @@
 
 #include "base/file.h"
 #include "base/json.h"
-#include "base/json_text.h"
 #include "base/text.h"
 #include "commands.h"
 #include "display_options.h"

@@ -9,7 +9,6 @@
 #include "front/arguments.h"
 #include "image/io/output_file.h"
 #include "image/io/write_image.h"
-#include "image/io/write_ktx2.h"
 #include "image_files.h"
 #include "messages.h"
 #include "probe/convert.h"

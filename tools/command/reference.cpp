@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
-#include "front/settings_page.h"
+#include "front/settings.h"
 
 namespace chromeball {
 

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "front/settings.h"
-#include "front/settings_page.h"
 #include "session/load_scene.h"
 #include "session/memory_estimate.h"
 

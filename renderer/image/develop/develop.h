@@ -6,9 +6,27 @@
 
 #include "image/develop/bloom.h"
 #include "image/develop/lens.h"
-#include "image/develop/motion_blur.h"
+#include "image/image.h"
 
 namespace chromeball {
+
+// Streaks: an image blurred along a line, as if the camera had turned during the exposure.
+
+inline constexpr double kMaxMotion = 4096;
+
+struct Motion {
+  double length;  // pixels
+  double angle;   // degrees, counter-clockwise from the right
+};
+
+// The mean along a segment with its middle in the pixel. Each step along the longer axis of the
+// segment takes two pixels by linear interpolation, weighted by the segment's share of the step:
+// exactly a box if the segment is horizontal or vertical. The image is mirrored at its borders
+// (mirrored()), so that the sum of its pixels is kept; not in the corners, if the segment is
+// neither horizontal nor vertical. Infinity and NaN spread.
+Image blurMotion(const Image& image, const Motion& motion);
+
+// All steps.
 
 // The settings, in the order in which they are applied.
 struct DevelopSettings {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/develop/gaussian_line.h"
+#include "image/develop/bloom.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include "base/file.h"
 #include "image/io/image_format.h"
 #include "image/io/read_image.h"
-#include "image/io/tiff_block.h"
+#include "image/io/tiff.h"
 
 namespace chromeball {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/io/icc_profile.h"
+#include "image/io/color_space.h"
 
 #include <algorithm>
 #include <array>

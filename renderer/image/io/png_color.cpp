@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/io/png_color.h"
+#include "image/io/color_space.h"
 
 #include <fmt/format.h>
 #include <png.h>

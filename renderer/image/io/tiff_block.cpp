@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/io/tiff_block.h"
+#include "image/io/tiff.h"
 
 #include <fmt/format.h>
 #include <zlib.h>

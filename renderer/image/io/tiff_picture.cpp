@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/io/tiff_picture.h"
+#include "image/io/tiff.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "image/io/tiff_block.h"
 #include "image/size_limits.h"
 
 namespace chromeball {

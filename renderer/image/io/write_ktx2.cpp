@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/io/write_ktx2.h"
+#include "image/io/write_image.h"
 
 #include <Imath/half.h>
 

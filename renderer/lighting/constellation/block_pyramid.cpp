@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/constellation/block_pyramid.h"
+#include "lighting/constellation/penrose.h"
 
 #include <numeric>
 

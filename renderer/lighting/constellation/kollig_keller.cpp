@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/constellation/kollig_keller.h"
+#include "lighting/constellation/spherical_kmeans.h"
 
 #include <limits>
 #include <numeric>

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "lighting/fit/light_descent.h"
-#include "lighting/fit/radiance_points.h"
 #include "math/icosphere.h"
 #include "probe/irradiance.h"
 #include "probe/mapping.h"

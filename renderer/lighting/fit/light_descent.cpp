@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "lighting/fit/nonnegative.h"
+#include "math/dense_solvers.h"
 
 namespace chromeball {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/fit/radiance_points.h"
+#include "lighting/fit/light_descent.h"
 
 namespace chromeball {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "probe/capture/edge_map.h"
+#include "probe/capture/find_circle.h"
 
 namespace chromeball {
 

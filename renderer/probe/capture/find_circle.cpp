@@ -4,8 +4,6 @@
 #include <random>
 #include <vector>
 
-#include "probe/capture/edge_map.h"
-
 namespace chromeball {
 namespace {
 

@@ -11,7 +11,6 @@
 #include "image/image.h"
 #include "image/io/read_image.h"
 #include "probe/capture/exposure.h"
-#include "probe/capture/response_curve.h"
 
 namespace chromeball {
 

@@ -30,8 +30,8 @@ struct PhotographSeries {
   };
   std::vector<FlatField> flatFields;
 
-  // linear, srgb, solve (exposure.h) or a file (response_curve.h). Empty: the response that the
-  // files state, else srgb for 8 bits, else linear.
+  // linear, srgb, solve (exposure.h) or a file (ResponseCurve::read()). Empty: the response that
+  // the files state, else srgb for 8 bits, else linear.
   std::string response;
   double smoothness = 20;      // of solve
   std::optional<float> white;  // of float files (merge_exposures.h)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "probe/capture/response_curve.h"
+#include "probe/capture/exposure.h"
 
 #include <fmt/format.h>
 

@@ -12,7 +12,7 @@
 #include "film/film.h"
 #include "relight/stage/light_stage.h"
 #include "relight/stage/relit_stage.h"
-#include "scene/gltf/custom_data.h"
+#include "scene/gltf/load_gltf.h"
 #include "transport/world.h"
 
 namespace chromeball {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/gltf/custom_data.h"
+#include "scene/gltf/load_gltf.h"
 
 #include <fmt/format.h>
 
 #include "scene/gltf/accessor.h"
-#include "scene/gltf/compressed_mesh.h"
 #include "scene/gltf/gltf_file.h"
 #include "scene/gltf/gltf_json.h"
+#include "scene/gltf/mesh.h"
 #include "scene/gltf/node_tree.h"
 
 namespace chromeball {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/gltf/decode_images.h"
+#include "scene/gltf/material_reader.h"
 
 #include <algorithm>
 #include <atomic>

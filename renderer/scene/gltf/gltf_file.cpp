@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/json.h"
-#include "base/json_text.h"
 #include "base/text.h"
 #include "scene/gltf/glb.h"
 #include "scene/gltf/gltf_json.h"

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "base/json.h"
-#include "base/json_text.h"
 #include "base/text.h"
 
 namespace chromeball {

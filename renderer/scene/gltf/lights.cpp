@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/gltf/lights.h"
+#include "scene/gltf/node_tree.h"
 
 #include <fmt/format.h>
 

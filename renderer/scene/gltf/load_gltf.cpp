@@ -10,11 +10,10 @@
 
 #include "base/text.h"
 #include "scene/gltf/animation.h"
-#include "scene/gltf/compressed_mesh.h"
 #include "scene/gltf/gltf_file.h"
 #include "scene/gltf/gltf_json.h"
-#include "scene/gltf/lights.h"
 #include "scene/gltf/material_reader.h"
+#include "scene/gltf/mesh.h"
 #include "scene/gltf/model_cache.h"
 #include "scene/gltf/node_tree.h"
 #include "scene/motion.h"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads glTF 2.0 (.gltf, .glb) into a Scene.
+// Reads glTF 2.0 (.gltf, .glb) into a Scene, and what a file of this program has besides.
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -59,5 +61,23 @@ std::vector<double> animationChanges(const std::string& path, const GltfChoice& 
 // buffers, or requires an unsupported extension.
 Scene loadGltf(const std::string& path, const Transform& placement, const Warn& warn,
                const GltfChoice& choice = {});
+
+// Data that a glTF file of this program carries besides a scene.
+
+struct CustomData {
+  using Arrays = std::map<std::string, std::vector<vec3>>;
+
+  // For each node, the attributes of its mesh's only primitive whose names start with the prefix,
+  // each of finite vectors. Nodes whose mesh has several primitives have none.
+  std::map<int, Arrays> attributes;
+  std::set<int> turned;  // the nodes of these that turn, mirror or stretch their mesh
+  Arrays tables;         // the accessors of extras.chromeball.tables
+  std::map<std::string, std::string> texts;  // strings of extras.chromeball
+  glm::dvec3 origin{0};                      // extras.chromeball.origin
+};
+
+// Throws InputError ("FILE: reason") as loadGltf(), and for vectors that are not finite.
+CustomData readCustomData(const std::string& path, const std::string& prefix,
+                          ExternalFiles external);
 
 }  // namespace chromeball

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "scene/gltf/decode_images.h"
 #include "scene/gltf/gltf_json.h"
 
 namespace chromeball {

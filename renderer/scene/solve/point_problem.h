@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reprojection error of known points, as a least-squares problem (levenberg_marquardt.h).
+// The reprojection error of known points, as a least-squares problem (minimise() of
+// math/dense_solvers.h).
 #pragma once
 
 #include <Eigen/Core>

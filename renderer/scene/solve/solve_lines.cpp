@@ -6,14 +6,14 @@
 #include <array>
 
 #include "base/error.h"
+#include "math/dense_solvers.h"
 #include "math/rotation.h"
-#include "scene/solve/levenberg_marquardt.h"
 
 namespace chromeball {
 namespace {
 
 // The distances of lines from the lines to their vanishing points, as a least-squares problem
-// (levenberg_marquardt.h).
+// (minimise()).
 struct CentredLine {
   int axis;
   glm::dvec2 middle, half;  // half: from the middle to the second end; pixels, right and up

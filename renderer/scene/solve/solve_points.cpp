@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "math/dense_solvers.h"
 #include "math/rotation.h"
-#include "scene/solve/levenberg_marquardt.h"
 #include "scene/solve/point_problem.h"
 
 namespace chromeball {

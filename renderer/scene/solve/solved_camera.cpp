@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/solve/solved_camera.h"
+#include "scene/solve/solve_camera.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json.h"
-#include "base/json_text.h"
 
 namespace chromeball {
 namespace {

@@ -7,12 +7,10 @@
 #include <cmath>
 
 #include "base/json.h"
-#include "base/json_text.h"
 #include "image/tonemap.h"
 #include "probe/convert.h"
 #include "probe/mapping.h"
 #include "study/report/log_log_plot.h"
-#include "study/report/report_images.h"
 #include "study/result_tables.h"
 
 namespace chromeball {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interactive parts of the report: images to divide and flip, maps to read. report_images.h
+// The interactive parts of the report: images to divide and flip, maps to read. report.h
 // describes `data`.
 'use strict';
 

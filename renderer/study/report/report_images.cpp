@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/report/report_images.h"
+#include "study/report/report.h"
 
 #include <algorithm>
 #include <cmath>

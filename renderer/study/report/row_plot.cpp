@@ -9,7 +9,7 @@
 #include "probe/convert.h"
 #include "probe/mapping.h"
 #include "study/report/log_log_plot.h"
-#include "study/report/report_images.h"
+#include "study/report/report.h"
 
 namespace chromeball {
 namespace {

@@ -15,7 +15,6 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/json_text.h"
 #include "base/progress.h"
 #include "image/io/write_image.h"
 #include "layer_view.h"

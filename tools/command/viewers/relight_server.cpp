@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/json_text.h"
 #include "base/parallel.h"
 #include "front/arguments.h"
 #include "image/image.h"

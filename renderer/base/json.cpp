@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/json_text.h"
+#include "base/json.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/json.h"
 
 namespace chromeball {
 
