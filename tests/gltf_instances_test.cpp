@@ -67,8 +67,7 @@ TEST(GltfInstances, AMeshFarFromItsOriginIsMovedThere) {
   GltfWriter w;
   const float far = 1e4f;
   const int positions = w.vec3s({far, far, far, far + 2, far, far, far, far + 2, far});
-  w.root["accessors"][size_t(positions)]["min"] = {far, far, far};
-  w.root["accessors"][size_t(positions)]["max"] = {far + 2, far + 2, far};
+  w.root["accessors"][size_t(positions)]["max"] = {1, 1, 1};  // does not matter
   const int mesh = w.mesh({{"attributes", {{"POSITION", positions}}}});
   w.add("nodes", {{"mesh", mesh}, {"translation", {-far, -far, -far}}});
   w.add("nodes", {{"mesh", mesh}, {"translation", {far, -far, -far}}, {"scale", {-1, 1, 1}}});

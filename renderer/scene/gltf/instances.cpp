@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <map>
 
 #include "base/text.h"
+#include "scene/bounds.h"
 #include "scene/builder/scene_builder.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/gltf_json.h"
@@ -63,23 +63,17 @@ std::vector<dmat4> readInstanceTransforms(GltfFile& file, const tinygltf::Node& 
   return transforms;
 }
 
-// The middle of the vertices of an accessor, if they are far from the origin as measured by their
-// extent; else 0. A mesh of several instances is moved there, so that the rounding errors of its
-// places in the world are those of its size. The bounds that a file states need not be right: any
-// origin will do.
-glm::dvec3 farMiddleOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+// Moves a mesh of several instances to its own origin if it is far away, as measured by its extent,
+// so that the rounding errors of its places in the world are those of its size. Returns where its
+// origin was.
+glm::dvec3 moveFromAfar(Mesh& mesh) {
   constexpr double kFar = 16;
-  const auto found = primitive.attributes.find("POSITION");
-  if (found == primitive.attributes.end() || found->second < 0 ||
-      size_t(found->second) >= model.accessors.size())
-    return glm::dvec3(0);
-  const tinygltf::Accessor& accessor = model.accessors[size_t(found->second)];
-  if (accessor.minValues.size() != 3 || accessor.maxValues.size() != 3) return glm::dvec3(0);
-  const glm::dvec3 low = glm::make_vec3(accessor.minValues.data()),
-                   high = glm::make_vec3(accessor.maxValues.data()), middle = 0.5 * (low + high);
-  const double distance = glm::length(middle);
-  return std::isfinite(distance) && distance > kFar * glm::length(high - low) ? middle
-                                                                              : glm::dvec3(0);
+  Bounds box;
+  for (const vec3& p : mesh.positions) box.add(p);
+  const glm::dvec3 middle = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+  if (!(glm::length(middle) > kFar * glm::length(glm::dvec3(box.size())))) return glm::dvec3(0);
+  transformMesh(mesh, glm::translate(dmat4(1), -middle));
+  return middle;
 }
 
 class InstanceReader {
@@ -106,7 +100,8 @@ class InstanceReader {
 
   struct Geometry {
     int users = 0;
-    int mesh = -1;  // index in the scene, once read; used if there are several users
+    int mesh = -1;         // index in the scene, once read; used if there are several users
+    glm::dvec3 origin{0};  // that is the mesh's own: far meshes are moved
   };
 
   // An instance to add: a primitive of a node, by one of the node's transforms.
@@ -149,18 +144,21 @@ class InstanceReader {
     const bool shared =
         plan.geometry && plan.geometry->users > 1 && canPlaceInstance(glm::dmat3(plan.toWorld));
     if (!shared) {
-      const int mesh = readMesh(plan, plan.geometry ? &plan.toWorld : nullptr);
-      if (mesh != -1) builder_.addInstance(mesh, plan.material, plan.node, {}, moves(plan));
+      const ReadMesh read = readMesh(plan, plan.geometry ? &plan.toWorld : nullptr);
+      if (read.mesh)
+        builder_.addInstance(builder_.addMesh(read.mesh), plan.material, plan.node, {},
+                             moves(plan));
       return;
     }
-    const glm::dvec3 origin = farMiddleOf(file_.model, primitiveOf(plan));
-    if (plan.geometry->mesh == -1) {
-      const dmat4 toOrigin = glm::translate(dmat4(1), -origin);
-      plan.geometry->mesh = readMesh(plan, origin == glm::dvec3(0) ? nullptr : &toOrigin);
+    Geometry& geometry = *plan.geometry;
+    if (geometry.mesh == -1) {
+      const ReadMesh read = readMesh(plan, nullptr);
+      if (!read.mesh) return;
+      geometry.mesh = builder_.addMesh(read.mesh);
+      geometry.origin = read.origin;
     }
-    if (plan.geometry->mesh == -1) return;
-    builder_.addInstance(plan.geometry->mesh, plan.material, plan.node,
-                         roundToFloat(glm::translate(plan.toWorld, origin)), moves(plan));
+    builder_.addInstance(geometry.mesh, plan.material, plan.node,
+                         roundToFloat(glm::translate(plan.toWorld, geometry.origin)), moves(plan));
   }
 
   const tinygltf::Primitive& primitiveOf(const Plan& plan) const {
@@ -177,25 +175,27 @@ class InstanceReader {
     return found->second;
   }
 
-  // Adds a mesh, of an earlier load if there is one, to the scene, transformed by `transform`
-  // unless that is null. Returns its index, or -1 if it has no triangles.
-  int readMesh(const Plan& plan, const dmat4* transform) {
+  // A mesh, of an earlier load if there is one, transformed by `transform`; if that is null and it
+  // is not skinned, moved to its origin if it is far away. Null if it has no triangles.
+  ReadMesh readMesh(const Plan& plan, const dmat4* transform) {
     const tinygltf::Primitive& primitive = primitiveOf(plan);
     MeshKey key;
     if (cache_) {
       key = keyOf(plan, primitive, transform);
-      if (auto known = cache_->find(key)) return builder_.addMesh(std::move(known));
+      if (ReadMesh known = cache_->find(key); known.mesh) return known;
     }
     const std::string where = describe(plan.mesh, size_t(plan.primitive));
     std::optional<Mesh> mesh =
         readPrimitive(file_, primitive, poseOf(plan.node), where, materialOf(plan));
-    if (!mesh) return -1;
+    if (!mesh) return {};
     if (transform) transformMesh(*mesh, *transform);
     if (!areFinite(mesh->positions))
       file_.fail("{}: its node's transform exceeds the range of float", where);
-    auto shared = std::make_shared<const Mesh>(std::move(*mesh));
-    if (cache_) cache_->add(std::move(key), shared);
-    return builder_.addMesh(std::move(shared));
+    ReadMesh read;
+    if (!transform && plan.geometry) read.origin = moveFromAfar(*mesh);
+    read.mesh = std::make_shared<const Mesh>(std::move(*mesh));
+    if (cache_) cache_->add(std::move(key), read);
+    return read;
   }
 
   const Material& materialOf(const Plan& plan) const {

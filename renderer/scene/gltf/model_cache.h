@@ -51,21 +51,33 @@ struct MeshKey {
   auto operator<=>(const MeshKey&) const = default;
 };
 
+struct ReadMesh {
+  std::shared_ptr<const Mesh> mesh;
+  glm::dvec3 origin{0};  // of its coordinates
+};
+
 // Does not keep meshes alive: it knows the meshes that some scene has.
 class MeshCache {
  public:
-  // Null if no scene has the mesh.
-  std::shared_ptr<const Mesh> find(const MeshKey& key) const {
+  // A null mesh if no scene has it.
+  ReadMesh find(const MeshKey& key) const {
     const auto found = meshes_.find(key);
-    return found == meshes_.end() ? nullptr : found->second.lock();
+    if (found == meshes_.end()) return {};
+    return {found->second.mesh.lock(), found->second.origin};
   }
-  void add(MeshKey key, const std::shared_ptr<const Mesh>& mesh) { meshes_[std::move(key)] = mesh; }
+  void add(MeshKey key, const ReadMesh& read) {
+    meshes_[std::move(key)] = {read.mesh, read.origin};
+  }
   void forgetUnused() {
-    std::erase_if(meshes_, [](const auto& entry) { return entry.second.expired(); });
+    std::erase_if(meshes_, [](const auto& entry) { return entry.second.mesh.expired(); });
   }
 
  private:
-  std::map<MeshKey, std::weak_ptr<const Mesh>> meshes_;
+  struct Known {
+    std::weak_ptr<const Mesh> mesh;
+    glm::dvec3 origin{0};
+  };
+  std::map<MeshKey, Known> meshes_;
 };
 
 class GltfFile;
