@@ -110,8 +110,11 @@ class KernelSum {
     return highest * r * concentration > 4 * lobe_.error * lobe_.mean;
   }
 
-  // The kernel at the centre, where it is linear in the cosine over the rectangle: to the error
-  // times the sum of its value and its mean over the sphere, for its light and for constant light.
+  // The kernel at the centre, where it is linear in the cosine over the rectangle, for its light
+  // and for constant light: to the error times the sum of the kernel's value and its mean over the
+  // sphere; or, where the light is not brighter than the map's mean, times the geometric mean of
+  // its value and its peak, which is 1. (The errors of a sky all around are those of the weight,
+  // too.)
   std::optional<ZonalKernel::Value> linearOver(const RectangleGeometry& g,
                                                const LightSpread& light) const {
     const double cosine = glm::dot(axis_, g.centre), r = g.radius;
@@ -126,7 +129,9 @@ class KernelSum {
     // and of constant light, a disc's.
     const double sine2 = std::max(1 - cosine * cosine, 0.0), even = r * r / 4;
     const double squared = std::max(std::min(light.squared, light.concentration * even), even);
-    if (k.curvature * sine2 * squared / 2 > lobe_.error * (k.value + lobe_.mean)) return {};
+    const double brightness = std::max(light.share * 4 * kPiD / g.solidAngle, 1.0);
+    const double allowed = std::max(k.value + lobe_.mean, std::sqrt(k.value) / brightness);
+    if (k.curvature * sine2 * squared / 2 > lobe_.error * allowed) return {};
     return k;
   }
 

@@ -53,12 +53,12 @@ class ZonalKernel {
 
 // The mean of radiance under the kernel around each of the `directions` (unit). `latLong` is
 // finite, not negative, and constant over each texel, of any size. Rectangles over which the kernel
-// varies little are taken whole, with their first moments: for their light the kernel is off by at
-// most `error` of the sum of its value and its mean, the result by about `error` of itself and of
-// the map's mean, also where all light is one texel's (twice that at most;
-// tests/convolve_test.cpp). Never negative. Time is in proportion to 1 / error. A constant map
-// keeps its value to 1e-6 (under a cosine to 6e-5: exactIrradiance()). Parallel; the same bits for
-// any number of threads.
+// varies little are taken whole, with their first moments: for bright light the kernel is off
+// by at most `error` of the sum of its value and its mean (for light below the map's mean, of the
+// geometric mean of its value and its peak), the result by about `error` of itself and of the map's
+// mean, also where all light is one texel's (twice that at most; tests/convolve_test.cpp). Never
+// negative. Time is in proportion to 1 / error. A constant map keeps its value to 1e-6 (under a
+// cosine to 6e-5: exactIrradiance()). Parallel; the same bits for any number of threads.
 std::vector<dvec3> convolve(const Image& latLong, const ZonalKernel& kernel,
                             std::span<const vec3> directions, double error = 1e-3);
 
