@@ -20,7 +20,7 @@ class PrefilteredProbe {
   static constexpr float kLeastRoughness = 0.2f;
 
   // `roughnesses`: from kLeastRoughness to 1, of the tables to make; others are interpolated. A
-  // table takes about five seconds of a core at most. The probe must outlive this.
+  // table takes about three seconds of a core at most. The probe must outlive this.
   PrefilteredProbe(const Probe& probe, std::vector<float> roughnesses);
 
   // W/m^2 on a surface with this unit normal.
