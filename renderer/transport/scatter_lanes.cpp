@@ -111,7 +111,8 @@ void ScatterLanes::scatterLanes(const LaneTask& task, const PathArrays& paths, i
   if (guided.isGuided()) noteGuided(task, paths, i, bounce, goesOn, guided.fraction());
   if (depth >= kFirstRoulette) {  // as survivesRoulette()
     const Float8 largest = larger(larger(weighted.x, weighted.y), weighted.z);
-    const Float8 survival = smaller(largest * (ratio * bounce.ratio), L::splat(1));
+    const Float8 guideRatio = smaller(ratio * bounce.ratio, L::splat(kLargestGuideRatio));
+    const Float8 survival = smaller(largest * guideRatio, L::splat(1));
     goesOn &= ~(number(dimension::kRoulette) >= survival);
     weighted = {weighted.x / survival, weighted.y / survival, weighted.z / survival};
   }
