@@ -14,6 +14,12 @@ dvec3 meanDirection(const MapRectangle& r) {
           polar.sine2 * (std::sin(r.phi1) - std::sin(r.phi0))};
 }
 
+double sumOf(const dvec3& c) { return c.x + c.y + c.z; }
+double sumOf(const Rgb& c) { return sumOf(dvec3(c)); }
+
+// Of a rectangle of constant radiance, about.
+double evenSpread(const RectangleGeometry& g) { return g.radius * g.radius / 3; }
+
 }  // namespace
 
 MapRectangle MapRectangle::quarter(int i) const {
@@ -42,16 +48,6 @@ RadianceMoments::RadianceMoments(const dvec3& radiance, const RectangleGeometry&
     offset[axis] =
         (geometry.directionLength - geometry.solidAngle) * geometry.centre[axis] * radiance;
 }
-
-namespace {
-
-double sumOf(const dvec3& c) { return c.x + c.y + c.z; }
-double sumOf(const Rgb& c) { return sumOf(dvec3(c)); }
-
-// Of a rectangle of constant radiance, about.
-double evenSpread(const RectangleGeometry& g) { return g.radius * g.radius / 3; }
-
-}  // namespace
 
 MapMoments::MapMoments(const Image& latLong) : map_(&latLong) {
   for (int level = 1; columnsOf(level - 1) > 1 || rowsOf(level - 1) > 1; ++level) {
